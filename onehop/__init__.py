@@ -1,0 +1,1 @@
+"""Onehop: robot teams held together by radio, as real processes on a real bus."""

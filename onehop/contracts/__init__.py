@@ -1,0 +1,1 @@
+"""What every part agrees on: messages, topics, geometry, scenario, errors. A pure leaf."""

@@ -1,0 +1,290 @@
+"""What crosses the boundaries between world, radio and robots. Frozen values, no behaviour.
+
+Each is the content of one bus key (topics.py) except Percept and Carriage, which the drivers put
+together and take apart. Payloads between robots stay opaque bytes here: only robot_agent knows them.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.team import Status
+
+WIRE_VERSION = 1
+"""Schema version that every wire message starts with; any other is refused by name."""
+
+BROADCAST = 0
+"""Destination of a frame for everyone in range (robot ids start at 1)."""
+
+Ranges: TypeAlias = npt.NDArray[np.float32]
+NoteValue: TypeAlias = int | float | str | tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """What the world tells robot i at tick k (key obs/<i>).
+
+    incarnation: 0 for the first process of this robot, one more for each restart.
+    scan: (n_beams,) float32 [m], first beam to the right, last to the left, counter-clockwise;
+        +inf where nothing is in range (REP 117).
+    """
+
+    tick: int
+    time_ns: int
+    incarnation: int
+    pose: Pose
+    twist: Twist
+    scan: Ranges
+
+
+@dataclass(frozen=True, slots=True)
+class Reception:
+    """One message that the radio delivered.
+
+    source: robot that sent it. service_start_ns: instant at which the source's link layer began to
+    serve it. arrival_ns: instant of its last bit here. hops, attempts: over the whole path.
+    snr_db, bit_error_rate: of the last hop. msdu_bytes: size on the air that was paid for.
+    """
+
+    source: int
+    payload: bytes
+    service_start_ns: int
+    arrival_ns: int
+    hops: int
+    attempts: int
+    snr_db: float
+    bit_error_rate: float
+    msdu_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class Inbox:
+    """What the radio delivered to one robot in the tick that ends at time_ns (key rx/<i>)."""
+
+    tick: int
+    time_ns: int
+    receptions: tuple[Reception, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Percept:
+    """Everything that a robot can know at a tick."""
+
+    tick: int
+    time_ns: int
+    pose: Pose
+    twist: Twist
+    scan: Ranges
+    inbox: tuple[Reception, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Transmission:
+    """One message handed to the network card; destination is a robot id or BROADCAST.
+
+    msdu_bytes: size that it takes on the air [B], at least len(payload).
+    """
+
+    destination: int
+    payload: bytes
+    msdu_bytes: int
+
+
+@dataclass(frozen=True, slots=True)
+class Note:
+    """A structured event for people: kind in snake_case, data sorted by key."""
+
+    kind: str
+    data: dict[str, NoteValue]
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """Everything that robot i does at tick k (key out/<i>).
+
+    speed [m/s], remaining_distance [m]: what the network card may know (routing, thesis eq. p_r).
+    """
+
+    tick: int
+    incarnation: int
+    twist: Twist
+    outbox: tuple[Transmission, ...]
+    speed: float
+    remaining_distance: float
+    status: Status
+    notes: tuple[Note, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Presence:
+    """Ground truth of one present robot."""
+
+    robot: int
+    incarnation: int
+    pose: Pose
+    twist: Twist
+    held: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Offer:
+    """What one present robot handed to its network card in the last tick."""
+
+    robot: int
+    speed: float
+    remaining_distance: float
+    outbox: tuple[Transmission, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Departure:
+    """A robot that left the mission at this tick, and why."""
+
+    robot: int
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Contact:
+    """A robot that touched something in the last tick; other is a robot id, or 0 for an obstacle."""
+
+    robot: int
+    other: int
+    x: float
+    y: float
+
+
+@dataclass(frozen=True, slots=True)
+class Cut:
+    """No frame passes between a robot of side_a and a robot of side_b, either way."""
+
+    side_a: tuple[int, ...]
+    side_b: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Jam:
+    """Extra noise at receivers inside a disc: centre and radius [m], power at the receiver [dBm]."""
+
+    x: float
+    y: float
+    radius: float
+    noise_dbm: float
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """Ground truth of tick k (key truth): who is where, what is broken, what was offered to the air.
+
+    Everything the radio needs for the interval that ends at time_ns is in here, so that radio and
+    world can never disagree about who was present. Tuples are sorted by robot id.
+    """
+
+    tick: int
+    time_ns: int
+    present: tuple[Presence, ...]
+    offers: tuple[Offer, ...]
+    cuts: tuple[Cut, ...]
+    jams: tuple[Jam, ...]
+    contacts: tuple[Contact, ...]
+    departures: tuple[Departure, ...]
+
+
+class Fate(StrEnum):
+    """What became of a data message."""
+
+    DELIVERED = "delivered"
+    BELOW_THRESHOLD = "below threshold"
+    BIT_ERRORS = "bit errors"
+    RETRY_LIMIT = "retry limit"
+    NO_ROUTE = "no route"
+    QUEUE_FULL = "queue full"
+    RECEIVER_GONE = "receiver gone"
+    SENDER_GONE = "sender gone"
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What the radio did with one data message, said once, in the tick in which it was settled.
+
+    message: sequence number, unique per source. receiver: who got it or should have (a broadcast has
+    one verdict for each robot present). path: source to last holder, both included.
+    attempts: of each hop of the path. Times in ns: offered by the robot, service begun by its link
+    layer, arrival (-1 when lost). discovery_ns, queueing_ns: parts of the delay.
+    snr_db, bit_error_rate: of the last attempt of the last hop.
+    """
+
+    message: int
+    source: int
+    destination: int
+    receiver: int
+    fate: Fate
+    msdu_bytes: int
+    path: tuple[int, ...]
+    attempts: tuple[int, ...]
+    offered_ns: int
+    service_start_ns: int
+    arrival_ns: int
+    discovery_ns: int
+    queueing_ns: int
+    snr_db: float
+    bit_error_rate: float
+
+
+@dataclass(frozen=True, slots=True)
+class Ether:
+    """What happened on the air in the tick that ends at time_ns (key ether).
+
+    control_bytes: routing bytes sent since the start of the mission, by kind ("rreq", "rrep", ...).
+    """
+
+    tick: int
+    time_ns: int
+    verdicts: tuple[Verdict, ...]
+    control_bytes: dict[str, int]
+
+
+@dataclass(frozen=True, slots=True)
+class Carriage:
+    """What `Radio.carry` returns: inboxes of every present robot, and the record of the tick."""
+
+    inboxes: dict[int, Inbox]
+    ether: Ether
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """A robot that did not arrive with the team."""
+
+    robot: int
+    at_s: float
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Reign:
+    """A roster from the moment a robot began to act as its leader."""
+
+    at_s: float
+    leader: int
+    epoch: int
+    members: tuple[int, ...]
+    shape: str
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a mission ended (key end): "arrived", "failed" or "aborted", and why."""
+
+    outcome: str
+    reason: str
+    arrived: tuple[int, ...]
+    lost: tuple[Lost, ...]
+    leaders: tuple[Reign, ...]
+    ticks: int
+    sim_s: float
+    collisions: int

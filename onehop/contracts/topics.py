@@ -1,0 +1,57 @@
+"""Names of the bus keys and of the log channels. They stand here and nowhere else.
+
+Bus keys lie under one mission prefix, so that missions on one machine never hear each other.
+"""
+
+ROBOT_NAME = "robot-{}"
+WORLD, RADIO, RECORDER, OPERATOR = "world", "radio", "recorder", "operator"
+
+
+def robot_name(robot: int) -> str:
+    """Name of a robot's process, liveliness token and identity: robot-3."""
+    return ROBOT_NAME.format(robot)
+
+
+def obs(robot: int | str) -> str:
+    """World to robot: its observation of tick k."""
+    return f"obs/{robot}"
+
+
+def rx(robot: int | str) -> str:
+    """Radio to robot: its inbox of tick k."""
+    return f"rx/{robot}"
+
+
+def out(robot: int | str) -> str:
+    """Robot to world: its action of tick k."""
+    return f"out/{robot}"
+
+
+TRUTH = "truth"
+ETHER = "ether"
+END = "end"
+PROGRESS = "progress"
+
+
+def alive(name: str) -> str:
+    """Liveliness token of a process."""
+    return f"alive/{name}"
+
+
+def config(name: str) -> str:
+    """Query a process asks the world at its start: its briefing."""
+    return f"config/{name}"
+
+
+def record(name: str) -> str:
+    """World or radio to recorder: one tick's wire messages, in canonical order."""
+    return f"record/{name}"
+
+
+RECORDED = "recorded"
+"""Recorder to world: the last tick that is in the file."""
+
+
+def wire(key: str) -> str:
+    """Log channel of a bus key."""
+    return f"/wire/{key}"

@@ -1,0 +1,1 @@
+"""IEEE 802.11b link, contention and ad hoc routing: delays or drops every frame."""

@@ -1,0 +1,1 @@
+"""One robot: election, formation, way-finding, tracking."""

@@ -1,0 +1,1 @@
+"""The pure part of a robot: `Robot.step(Percept) -> Action`."""

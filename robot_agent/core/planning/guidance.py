@@ -1,0 +1,41 @@
+"""The interface between way-finding and the team: what a leader asks at every tick, and what it gets."""
+
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Protocol
+
+from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.messages import Note, Ranges
+
+
+class Progress(StrEnum):
+    """How far a pathfinder is."""
+
+    DRIVING = "driving"
+    ARRIVED = "arrived"
+    NO_WAY = "no way to the goal"
+
+
+@dataclass(frozen=True, slots=True)
+class Guidance:
+    """One tick of way-finding.
+
+    remaining: estimate of the distance still to drive [m]. passage: free width of the passage that the
+    robot is in or about to enter, seen by the laser to both sides [m]; inf in the open.
+    waypoint: virtual goal in force, map frame [m].
+    """
+
+    twist: Twist
+    progress: Progress
+    remaining: float
+    passage: float
+    waypoint: tuple[float, float]
+    notes: tuple[Note, ...]
+
+
+class Pathfinder(Protocol):
+    """A way-finding method. One instance serves one leadership; a new leader starts a new one."""
+
+    def step(self, pose: Pose, scan: Ranges, moving: frozenset[int]) -> Guidance:
+        """Decide the twist for this tick. moving: beams known to hit team mates (may be empty)."""
+        ...

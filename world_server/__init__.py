@@ -1,0 +1,1 @@
+"""Map, motion, laser range finder and clock: the ground truth."""
