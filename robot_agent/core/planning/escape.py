@@ -91,7 +91,8 @@ class Escape:
         self.planned = pose
         self.driver.shielded = 0
         half_view = float(self.fan.angles[-1])
-        view = View(self.fan, pose, scan, moving, self.afterimage.beside(pose, half_view))
+        beside = self.afterimage.beside(pose, half_view)
+        view = View(self.fan, pose, scan, moving, 0.1 * self.section.inflation, beside)
         self.afterimage.keep(view)
         samples = sample_fan(view, self.rng.random((self.section.samples, 2)), pose.heading, math.pi)
         known = self._way_points_in_view(view)

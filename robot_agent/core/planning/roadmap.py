@@ -58,6 +58,7 @@ class RoadMap:
         marks = np.concatenate((np.arange(len(extras)), np.full(len(samples), -1)))
         good = view.free(candidates, clearance) & view.visible(candidates)
         self.points: FloatArray = np.concatenate((view.origin[None], candidates[good]))
+        self.room: FloatArray = view.clearance(self.points)
         self.marks: Indices = np.concatenate(([-1], marks[good])).astype(np.intp)
         self._join()
 
@@ -70,7 +71,7 @@ class RoadMap:
             self.neighbours: Indices = np.empty((n, 0), dtype=np.intp)
             self.lengths: FloatArray = np.empty((n, 0))
             return
-        near = np.argsort(distance2, axis=1, kind="stable")[:, :k]
+        near = np.argpartition(distance2, k - 1, axis=1)[:, :k]
         a = np.concatenate((np.repeat(np.arange(n), k), np.zeros(n - 1, dtype=np.intp)))
         b = np.concatenate((near.ravel(), np.arange(1, n)))
         pairs = np.unique(np.minimum(a, b) * n + np.maximum(a, b))
@@ -80,14 +81,17 @@ class RoadMap:
         self._store(a[clear], b[clear], length[clear])
 
     def _clear(self, a: Indices, b: Indices) -> tuple[BoolArray, BoolArray]:
-        """Which edges are visible all along and keep the clearance; which of them keep the comfort."""
+        """Which edges are visible all along and keep the clearance; which of them keep the comfort.
+
+        Two ends with so much room that their discs, less the comfort, meet need no test.
+        """
         start, end = self.points[a], self.points[b]
         clear = np.ones(len(a), dtype=np.bool_)
         inner = np.flatnonzero(a > 0)
         for share in EDGE_PROBES:
             clear[inner] &= self.view.visible(start[inner] + share * (end[inner] - start[inner]))
-        rest = np.flatnonzero(clear)
-        wide = np.zeros(len(a), dtype=np.bool_)
+        wide = self.room[a] + self.room[b] - 2.0 * self.comfort >= np.hypot(*(end - start).T)
+        rest = np.flatnonzero(clear & ~wide)
         clear[rest], wide[rest] = self.view.passable_twice(
             start[rest], end[rest], self.clearance, self.comfort
         )

@@ -23,12 +23,18 @@ class View:
     """One scan seen from one pose.
 
     sight: (n_beams,) float64 [m], free range along each beam, laser range where nothing returned.
-    hits: (n_hits, 2) float64 [m], what the beams hit, team mates left out.
-    obstacles: (n, 2) float64 [m], hits and `beside` together.
+    obstacles: (n, 2) float64 [m], what the beams hit, team mates left out, and `beside`. Of hits closer
+    together than `grain` some are left out: a clearance c is then wrong by at most grain^2 / (8 c).
     """
 
     def __init__(
-        self, fan: Fan, pose: Pose, scan: Ranges, moving: frozenset[int], beside: FloatArray = NO_POINTS
+        self,
+        fan: Fan,
+        pose: Pose,
+        scan: Ranges,
+        moving: frozenset[int],
+        grain: float,
+        beside: FloatArray = NO_POINTS,
     ) -> None:
         self.fan = fan
         self.pose = pose
@@ -45,8 +51,8 @@ class View:
         self.directions: FloatArray = np.column_stack(
             (c * d[:, 0] - s * d[:, 1], s * d[:, 0] + c * d[:, 1])
         )
-        self.hits: FloatArray = self.origin + self.directions[solid] * self.sight[solid, None]
-        self.obstacles: FloatArray = np.concatenate((self.hits, beside)) if len(beside) else self.hits
+        hits = self.origin + self.directions[solid] * self.sight[solid, None]
+        self.obstacles: FloatArray = np.concatenate((_thinned(hits, grain), beside))
 
     def polar(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Bearing [rad, relative to the heading, in (-pi, pi]] and distance [m] of (n, 2) points."""
@@ -121,6 +127,17 @@ class Afterimage:
         near = np.flatnonzero(distance2 < (1.5 * self.reach) ** 2)
         order = near[np.argsort(distance2[near], kind="stable")]
         self.points = points[order[: self.capacity]]
+
+
+def _thinned(hits: FloatArray, grain: float) -> FloatArray:
+    """The same outline with fewer points: hits that fall into one step of `grain` along it become one."""
+    if len(hits) < 3:
+        return hits
+    step = np.hypot(*np.diff(hits, axis=0).T)
+    cell = np.floor(np.cumsum(np.minimum(step, grain)) / grain)
+    keep = np.concatenate(([True], np.diff(cell, prepend=0.0) > 0))
+    keep[-1] = True
+    return hits[keep]
 
 
 def squared_distances(a: FloatArray, b: FloatArray) -> FloatArray:
