@@ -32,7 +32,9 @@ LAST_WORDS_S = 2.0
 def main() -> int:
     parser = node.arguments("onehop.recorder", "Writes the log of a mission.")
     node.add_connect(parser)
-    parser.add_argument("--out", type=Path, required=True, help="folder for mission.mcap and summary.json")
+    parser.add_argument(
+        "--out", type=Path, required=True, help="folder for mission.mcap and summary.json"
+    )
     parser.add_argument("--no-file", action="store_true", help="make the digest, write no log")
     options = parser.parse_args()
     node.start(options)

@@ -14,11 +14,11 @@ from typing import Any, Literal, get_args, get_origin
 
 import cattrs
 from cattrs import AttributeValidationNote, IterableValidationNote
-from world_server.core.maps import further_files
 
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.scenario import Scenario
 from onehop.drive.codec import as_map
+from world_server.core.mapfile import map_files
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +149,7 @@ def _read_map_files(name: str, directory: Path, origin: str) -> dict[str, bytes]
                 f"{location}: {error.strerror or 'cannot be read'}",
                 "a ROS map .yaml, a MovingAI .map, or polygons in the scenario",
             ) from None
-        wanted += [name for name in further_files(current, files[current]) if name not in files]
+        wanted += [name for name in map_files(current, files[current]) if name not in files]
     return files
 
 
