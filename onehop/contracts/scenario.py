@@ -210,15 +210,17 @@ class PlannerSection:
     """Way-finding of the leader (thesis 3.4). inflation: clearance kept from obstacles [m].
 
     samples: points a road map. classify_range: obstacles nearer than this turn the fan [m].
+    memory: way points that `escape` can remember.
     """
 
     kind: Literal["escape", "modified", "original"] = "escape"
     samples: int = 200
     inflation: float = 0.5
     classify_range: float = 3.0
+    memory: int = 1024
 
     def problems(self) -> Iterator[Problem]:
-        yield from _positive(self, "samples", "inflation", "classify_range")
+        yield from _positive(self, "samples", "inflation", "classify_range", "memory")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,146 @@
+"""The laser range finder of every robot: exact, in one batch (thesis 3.2, 3.4).
+
+A wall segment near the robot covers an interval of beams, and only those beams are tested against it;
+candidates come from a cell list. Beams pass no joint between two walls: whether a beam hits is decided
+by the sides on which the ends lie, and walls that share an end share the answer.
+
+Leaves out: noise, beam width and mirror speed; all beams of a scan are taken at one instant.
+"""
+
+import math
+from typing import TypeAlias
+
+import numba
+import numpy as np
+import numpy.typing as npt
+
+from onehop.contracts.scenario import RobotSection
+from world_server.core.cells import CellList, IntArray, cell_at, cell_list
+from world_server.core.walls import FloatArray, WallMap
+
+Scans: TypeAlias = npt.NDArray[np.float32]
+
+_SPARE = 1
+"""Beams tested beyond each end of an interval: more than the rounding of its angles can hide."""
+
+
+@numba.njit(cache=True)
+def _wall_beams(
+    ax: float, ay: float, bx: float, by: float, first: int, last: int,
+    fan: FloatArray, ranges: FloatArray,
+) -> None:  # fmt: skip
+    """Shorten beams first..last to where they hit the segment a-b, given in the robot's frame.
+
+    With d the beam's direction, the ends' sides are a x d, b x d; the range is a x b / (a x d - b x d).
+    """
+    area = ax * by - ay * bx
+    for beam in range(max(0, first), min(len(ranges) - 1, last) + 1):
+        dx, dy = fan[beam, 0], fan[beam, 1]
+        side_a, side_b = ax * dy - ay * dx, bx * dy - by * dx
+        if (side_a > 0.0 and side_b > 0.0) or (side_a < 0.0 and side_b < 0.0):
+            continue
+        turn = side_a - side_b
+        reach = area / turn if turn != 0.0 else min(ax * dx + ay * dy, bx * dx + by * dy)
+        if 0.0 <= reach < ranges[beam]:
+            ranges[beam] = reach
+
+
+@numba.njit(cache=True)
+def _look_at_wall(
+    ax: float, ay: float, bx: float, by: float, limit: float, half: float, per_radian: float,
+    fan: FloatArray, ranges: FloatArray,
+) -> None:  # fmt: skip
+    """Shorten the beams that hit one segment a-b, given in the robot's frame [m]."""
+    if half <= 0.5 * math.pi and ax < 0.0 and bx < 0.0:
+        return
+    ex, ey = bx - ax, by - ay
+    squared = ex * ex + ey * ey
+    along = min(1.0, max(0.0, -(ax * ex + ay * ey) / squared)) if squared > 0.0 else 0.0
+    nx, ny = ax + along * ex, ay + along * ey
+    if nx * nx + ny * ny > limit * limit:
+        return
+    from_a, from_b = math.atan2(ay, ax), math.atan2(by, bx)
+    low, high = min(from_a, from_b), max(from_a, from_b)
+    right = math.ceil((low + half) * per_radian) - _SPARE
+    left = math.floor((high + half) * per_radian) + _SPARE
+    if high - low <= math.pi:
+        _wall_beams(ax, ay, bx, by, right, left, fan, ranges)
+    else:
+        _wall_beams(ax, ay, bx, by, left - 2 * _SPARE, len(ranges) - 1, fan, ranges)
+        _wall_beams(ax, ay, bx, by, 0, right + 2 * _SPARE, fan, ranges)
+
+
+@numba.njit(cache=True)
+def _look_at_disc(
+    cx: float, cy: float, radius: float, limit: float, half: float, per_radian: float,
+    fan: FloatArray, ranges: FloatArray,
+) -> None:  # fmt: skip
+    """Shorten the beams that hit a disc, centre in the robot's frame [m]."""
+    distance = math.hypot(cx, cy)
+    if distance - radius > limit or distance <= radius:
+        return
+    middle, width = math.atan2(cy, cx), math.asin(radius / distance)
+    for lap in (-math.tau, 0.0, math.tau):
+        right = max(0, math.ceil((middle + lap - width + half) * per_radian) - _SPARE)
+        left = min(len(ranges) - 1, math.floor((middle + lap + width + half) * per_radian) + _SPARE)
+        for beam in range(right, left + 1):
+            dx, dy = fan[beam, 0], fan[beam, 1]
+            off = cx * dy - cy * dx
+            if abs(off) > radius:
+                continue
+            reach = cx * dx + cy * dy - math.sqrt(radius * radius - off * off)
+            if 0.0 <= reach < ranges[beam]:
+                ranges[beam] = reach
+
+
+@numba.njit(cache=True)
+def _scan_all(
+    poses: FloatArray, looking: IntArray, radius: float, limit: float, half: float, fan: FloatArray,
+    frame: FloatArray, columns: int, rows: int, first: IntArray, segments: FloatArray, scans: Scans,
+) -> None:  # fmt: skip
+    """Scan from the poses, (n, 3), numbered in `looking` into rows of scans; the others are seen."""
+    beams = len(fan)
+    per_radian = (beams - 1) / (2.0 * half)
+    ranges = np.empty(beams)
+    for row in range(len(looking)):
+        own = looking[row]
+        x, y = poses[own, 0], poses[own, 1]
+        c, s = math.cos(poses[own, 2]), math.sin(poses[own, 2])
+        ranges[:] = math.inf
+        cell = cell_at(frame, columns, rows, x, y)
+        for item in range(first[cell], first[cell + 1]):
+            ax, ay = segments[item, 0] - x, segments[item, 1] - y
+            bx, by = segments[item, 2] - x, segments[item, 3] - y
+            _look_at_wall(
+                c * ax + s * ay, c * ay - s * ax, c * bx + s * by, c * by - s * bx,
+                limit, half, per_radian, fan, ranges,
+            )  # fmt: skip
+        for other in range(len(poses)):
+            if other != own:
+                ax, ay = poses[other, 0] - x, poses[other, 1] - y
+                _look_at_disc(
+                    c * ax + s * ay, c * ay - s * ax, radius, limit, half, per_radian, fan, ranges
+                )
+        for beam in range(beams):
+            scans[row, beam] = ranges[beam] if ranges[beam] <= limit else math.inf
+
+
+class Laser:
+    """The lasers of a team on one map."""
+
+    def __init__(self, walls: WallMap, body: RobotSection) -> None:
+        self._half = math.radians(body.laser_fov_deg) / 2.0
+        angles = np.linspace(-self._half, self._half, body.laser_beams)
+        self._fan = np.column_stack((np.cos(angles), np.sin(angles)))
+        self._range = body.laser_range
+        self._radius = body.radius
+        self._cells: CellList = cell_list(walls.segments, walls.bounds, body.laser_range)
+
+    def scans(self, poses: FloatArray, looking: IntArray) -> Scans:
+        """One scan for each robot in `looking`, (k,) int32, rows of poses (n, 3) [m, m, rad].
+
+        (k, n_beams) float32 [m], right to left; +inf where neither a wall nor a robot is in range.
+        """
+        scans = np.empty((len(looking), len(self._fan)), dtype=np.float32)
+        _scan_all(poses, looking, self._radius, self._range, self._half, self._fan, *self._cells, scans)
+        return scans
