@@ -1,8 +1,8 @@
 """The recorder process: everything on the bus into one MCAP file, as it happens.
 
-World and radio hand it one batch per tick. It writes complete ticks in canonical order, flushes them to the
-operating system and tells the world how far the file is; the world never runs more than a few ticks ahead.
-With --no-file it only makes the digest.
+World and radio hand it one batch per tick. It writes complete ticks in canonical order, flushes them to
+the operating system and tells the world how far the file is; the world never runs more than a few ticks
+ahead. With --no-file it only makes the digest.
 """
 
 import json

@@ -51,6 +51,10 @@ def _scalar(value: Any, kind: Any) -> Any:
     return value
 
 
+def _is_literal(kind: Any) -> bool:
+    return bool(get_origin(kind) == Literal)
+
+
 def _choice(value: Any, kind: Any) -> Any:
     choices = get_args(kind)
     if value not in choices:
@@ -62,7 +66,7 @@ def _make_converter() -> cattrs.Converter:
     converter = cattrs.Converter(forbid_extra_keys=True)
     for kind in (bool, int, float, str):
         converter.register_structure_hook(kind, _scalar)
-    converter.register_structure_hook_func(lambda kind: get_origin(kind) is Literal, _choice)
+    converter.register_structure_hook_func(_is_literal, _choice)
     return converter
 
 

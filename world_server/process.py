@@ -71,7 +71,7 @@ def _options() -> argparse.Namespace:
 
 
 @dataclass
-class _Interrupted(Exception):
+class _InterruptedError(Exception):
     reason: str
 
 
@@ -124,7 +124,7 @@ class _Host:
             node.calm_garbage_collector()
             started = time.monotonic()
             outcome = self._run()
-        except _Interrupted as interruption:
+        except _InterruptedError as interruption:
             outcome = self._world.aborted(interruption.reason)
         wall_s = time.monotonic() - started
         self._put_end(encode(End(outcome, self._world.tick, wall_s)))
@@ -149,7 +149,7 @@ class _Host:
             self._hear(deadline)
             if time.monotonic() > deadline:
                 names = ", ".join(sorted(key.removeprefix(topics.alive("")) for key in missing))
-                raise _Interrupted(f"not started within {START_S:.0f} s: {names}")
+                raise _InterruptedError(f"not started within {START_S:.0f} s: {names}")
 
     def _run(self) -> Outcome:
         outcome = None
@@ -185,11 +185,11 @@ class _Host:
         deadline = time.monotonic() + self._scenario.clock.silence_s
         while self._awaited or truth.tick - self._recorded > RECORD_WINDOW:
             if self._stop:
-                raise _Interrupted(self._stop)
+                raise _InterruptedError(self._stop)
             self._hear(deadline)
             if time.monotonic() > deadline:
                 if not self._awaited:
-                    raise _Interrupted("the recorder does not keep up")
+                    raise _InterruptedError("the recorder does not keep up")
                 for i in sorted(self._awaited):
                     self._fence(i, f"silent for {self._scenario.clock.silence_s:g} s")
 
@@ -264,7 +264,7 @@ class _Host:
         while key not in self._alive:
             self._hear(deadline)
             if time.monotonic() > deadline:
-                raise _Interrupted(f"robot {robot} was not started again within {RESTART_S:.0f} s")
+                raise _InterruptedError(f"robot {robot} was not started again within {RESTART_S:.0f} s")
         self._restarting = 0
 
     def _report_progress(self, truth: Truth) -> None:

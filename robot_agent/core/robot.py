@@ -18,6 +18,7 @@ from robot_agent.core.formation import Formation, formation, width
 from robot_agent.core.gains import make_policy
 from robot_agent.core.messages import Phase
 from robot_agent.core.modes import Event
+from robot_agent.core.planning import make_pathfinder
 from robot_agent.core.planning.guidance import Pathfinder, Progress
 from robot_agent.core.protocol import NANOSECONDS, Protocol
 from robot_agent.core.safety import SafetyFilter
@@ -44,7 +45,7 @@ FOLLOWER_MODES = (Mode.FOLLOWING, Mode.NARROW, Mode.BORDER)
 class Robot:
     """One incarnation of one robot."""
 
-    def __init__(self, briefing: Briefing, make_pathfinder: PathfinderMaker) -> None:
+    def __init__(self, briefing: Briefing, make_pathfinder: PathfinderMaker = make_pathfinder) -> None:
         self._briefing = briefing
         self._make_pathfinder = make_pathfinder
         self._rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
