@@ -91,6 +91,7 @@ class _Host:
         self._recorded = -1
         self._actions: dict[int, tuple[Action, bytes]] = {}
         self._awaited: set[int] = set()
+        self._fenced: dict[int, str] = {}
         self._stop: str | None = None
         self._restarting = 0
         self._next_progress = 0.0
@@ -172,6 +173,9 @@ class _Host:
         record += [(topics.out(i), self._actions[i][1]) for i in sorted(self._actions)]
         self._put_record(pack_record(truth.tick, record))
         world.advance({i: self._actions[i][0] for i in sorted(self._actions)})
+        for i in sorted(self._fenced):
+            world.fence(i, self._fenced[i])
+        self._fenced.clear()
         self._report_progress(truth)
         return world.outcome()
 
@@ -233,9 +237,9 @@ class _Host:
         self._actions[robot] = action, data
 
     def _fence(self, robot: int, why: str) -> None:
-        """Leave a robot out from the next tick on, unless its action of this tick has come already."""
+        """Leave a robot out from the next tick on; an action that it gave for this one still counts."""
         self._awaited.discard(robot)
-        self._world.fence(robot, why)
+        self._fenced.setdefault(robot, why)
 
     def _carry_out_faults(self, truth: Truth) -> None:
         """End the processes of those who departed, start those anew that the script restarts.
