@@ -1,8 +1,8 @@
 """How a follower drives: tracking its slot in the open, along borders when something is in the way.
 
-In the open the thesis's controller (tracking.py) drives. When the straight way to the slot is blocked for
-a while the robot follows the border, and as far as it can sees points of the leader's trail, it heads for
-the newest of those: the leader came through there, so a way exists. It resumes the slot when the straight
+In the open the thesis's controller (tracking.py) drives. When the straight way to the slot is blocked
+for a while the robot follows the border, and where it sees points of the leader's trail it heads for the
+newest of those: the leader came through there, so a way exists. It resumes the slot when the straight
 way is clear again (thesis 3.3.4: back in direct range).
 
 Differs: the thesis only names border following; the trail makes it end behind corners where the slot
@@ -77,7 +77,7 @@ class Follower:
         trail: Sequence[tuple[float, float]],
         k_rho: float,
     ) -> Twist:
-        """Twist for this tick. nearest: least range of the scan [m]; trail: leader's way, oldest first."""
+        """Twist for this tick. nearest: least range; trail: leader's way, oldest first [m]."""
         error = polar_error(pose, target)
         rho = error.rho
         bearing = wrap_angle(error.alpha + math.pi) if error.reverse else error.alpha
@@ -88,7 +88,7 @@ class Follower:
         if nearest > min(LOOKAHEAD, rho + 0.5):
             self._clear()
             if not self.border:
-                return self._track(pose, target, rho, bearing, k_rho, LOOKAHEAD)
+                return self._track(pose, target, bearing, k_rho, LOOKAHEAD)
         steering = self._steering
         steering.look(scan)
         ahead = abs(bearing) <= math.pi / 2.0
@@ -96,11 +96,11 @@ class Follower:
         if free >= min(rho, LOOKAHEAD - 0.01):
             self._clear()
             if not self.border:
-                return self._track(pose, target, rho, bearing, k_rho, free)
+                return self._track(pose, target, bearing, k_rho, free)
         elif ahead:
             self._blocked = min(self._blocked + 1, BLOCKED_TICKS)
             self.border = self.border or self._blocked == BLOCKED_TICKS
-        return self._detour(pose, target, rho, bearing, trail, k_rho)
+        return self._detour(pose, rho, bearing, trail, k_rho)
 
     def _clear(self) -> None:
         self._blocked = max(self._blocked, 0) - 1
@@ -110,9 +110,7 @@ class Follower:
         elif self.border:
             self._blocked = min(self._blocked, 0)
 
-    def _track(
-        self, pose: Pose, target: Pose, rho: float, bearing: float, k_rho: float, free: float
-    ) -> Twist:
+    def _track(self, pose: Pose, target: Pose, bearing: float, k_rho: float, free: float) -> Twist:
         """The way to the slot is clear: thesis eq. 3.11, 3.12."""
         self._idle = 0
         error = polar_error(pose, target)
@@ -128,7 +126,6 @@ class Follower:
     def _detour(
         self,
         pose: Pose,
-        target: Pose,
         rho: float,
         bearing: float,
         trail: Sequence[tuple[float, float]],
@@ -206,4 +203,4 @@ class Follower:
             return Twist(0.0, self._escape_side * 0.6 * self._body.max_turn_rate)
         direction, free = choice
         speed = min(0.6, max(0.0, free) / REACTION) * max(0.0, math.cos(direction)) ** 2
-        return Twist(speed, max(-3.0, min(3.0, self._gains.k_alpha * direction)))
+        return Twist(speed, turn_towards(direction, self._gains, self._body).w)

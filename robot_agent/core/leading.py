@@ -1,4 +1,4 @@
-"""What a leader keeps about its followers and about strangers: acknowledgements, reports, acquaintances."""
+"""What a leader keeps about its followers and about strangers: answers, reports, acquaintances."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ LONGEST_PROBATION = 3
 
 @dataclass(slots=True)
 class Acquaintance:
-    """A robot outside the roster that was heard. streak: periods in a row; members: whom it speaks for."""
+    """A robot outside the roster that was heard. streak: periods in a row; last_period: their last."""
 
     streak: int
     last_period: int

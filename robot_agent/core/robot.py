@@ -12,13 +12,13 @@ from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map, wrap_angl
 from onehop.contracts.messages import Action, Note, Percept, Ranges
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Briefing
-from onehop.contracts.team import Mode, Shape, Status
+from onehop.contracts.team import Mode, Status
 from robot_agent.core.follower import IN_POSITION, Follower
 from robot_agent.core.formation import Formation, formation, width
 from robot_agent.core.gains import make_policy
 from robot_agent.core.messages import Phase
 from robot_agent.core.modes import Event
-from robot_agent.core.planning.guidance import Pathfinder, Progress
+from robot_agent.core.planning import Pathfinder, Progress, make_pathfinder
 from robot_agent.core.protocol import NANOSECONDS, Protocol
 from robot_agent.core.safety import SafetyFilter
 from robot_agent.core.scan import Fan
@@ -44,7 +44,7 @@ FOLLOWER_MODES = (Mode.FOLLOWING, Mode.NARROW, Mode.BORDER)
 class Robot:
     """One incarnation of one robot."""
 
-    def __init__(self, briefing: Briefing, make_pathfinder: PathfinderMaker) -> None:
+    def __init__(self, briefing: Briefing, make_pathfinder: PathfinderMaker = make_pathfinder) -> None:
         self._briefing = briefing
         self._make_pathfinder = make_pathfinder
         self._rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
@@ -221,7 +221,7 @@ class Robot:
         return Pose(x, y, leader.heading)
 
     def _measure(self, protocol: Protocol, now_ns: int) -> None:
-        """Throughput of each Next, 0 for each that is missing, and the gain that follows (thesis 3.5)."""
+        """Throughput of each Next, 0 for a missing one, and the gain that follows (thesis 3.5)."""
         link = protocol.link
         if link.next_ns > self._next_ns:
             self._next_ns = link.next_ns
