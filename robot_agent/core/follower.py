@@ -1,8 +1,8 @@
 """How a follower drives: tracking its slot in the open, along borders when something is in the way.
 
-In the open the thesis's controller (tracking.py) drives. When the straight way to the slot is blocked for
-a while the robot follows the border, and as far as it can sees points of the leader's trail, it heads for
-the newest of those: the leader came through there, so a way exists. It resumes the slot when the straight
+In the open the thesis's controller (tracking.py) drives. When the straight way to the slot is blocked
+for a while the robot follows the border, and where it sees points of the leader's trail it heads for the
+newest of those: the leader came through there, so a way exists. It resumes the slot when the straight
 way is clear again (thesis 3.3.4: back in direct range).
 
 Differs: the thesis only names border following; the trail makes it end behind corners where the slot
@@ -33,9 +33,6 @@ FACING = 1.2
 BLOCKED_TICKS, CLEAR_TICKS = 10, 6
 """Ticks in a row after which an obstacle counts as in the way, and as passed: no flutter of modes."""
 
-STANDOFF = 1.2
-"""Distance kept from the leader's last position while its slot cannot be reached [m]."""
-
 REACTION = 0.4
 """A robot drives at most as fast as lets it stop within this time before what it sees [s]."""
 
@@ -56,6 +53,7 @@ class Follower:
         self._dodge = dodge
         self._dodges = 0
         self._blocked = 0
+        self._clear_for = 0
         self._idle = 0
         self._side = 0
         self._escape = 0
@@ -75,9 +73,13 @@ class Follower:
         nearest: float,
         target: Pose,
         trail: Sequence[tuple[float, float]],
+        standoff: float,
         k_rho: float,
     ) -> Twist:
-        """Twist for this tick. nearest: least range of the scan [m]; trail: leader's way, oldest first."""
+        """Twist for this tick. nearest: least range; trail: leader's way, oldest first [m].
+
+        standoff: distance to keep from the leader while the slot cannot be reached [m].
+        """
         error = polar_error(pose, target)
         rho = error.rho
         bearing = wrap_angle(error.alpha + math.pi) if error.reverse else error.alpha
@@ -88,7 +90,7 @@ class Follower:
         if nearest > min(LOOKAHEAD, rho + 0.5):
             self._clear()
             if not self.border:
-                return self._track(pose, target, rho, bearing, k_rho, LOOKAHEAD)
+                return self._track(pose, target, bearing, k_rho, LOOKAHEAD)
         steering = self._steering
         steering.look(scan)
         ahead = abs(bearing) <= math.pi / 2.0
@@ -96,23 +98,20 @@ class Follower:
         if free >= min(rho, LOOKAHEAD - 0.01):
             self._clear()
             if not self.border:
-                return self._track(pose, target, rho, bearing, k_rho, free)
+                return self._track(pose, target, bearing, k_rho, free)
         elif ahead:
-            self._blocked = min(self._blocked + 1, BLOCKED_TICKS)
-            self.border = self.border or self._blocked == BLOCKED_TICKS
-        return self._detour(pose, target, rho, bearing, trail, k_rho)
+            self._clear_for = 0
+            self._blocked += 1
+            self.border = self.border or self._blocked >= BLOCKED_TICKS
+        return self._detour(pose, rho, bearing, trail, standoff, k_rho)
 
     def _clear(self) -> None:
-        self._blocked = max(self._blocked, 0) - 1
-        if self._blocked <= -CLEAR_TICKS:
-            self.border, self._side, self._blocked = False, 0, 0
-            self._aim = None
-        elif self.border:
-            self._blocked = min(self._blocked, 0)
+        self._blocked = 0
+        self._clear_for += 1
+        if self._clear_for >= CLEAR_TICKS:
+            self.border, self._side, self._aim = False, 0, None
 
-    def _track(
-        self, pose: Pose, target: Pose, rho: float, bearing: float, k_rho: float, free: float
-    ) -> Twist:
+    def _track(self, pose: Pose, target: Pose, bearing: float, k_rho: float, free: float) -> Twist:
         """The way to the slot is clear: thesis eq. 3.11, 3.12."""
         self._idle = 0
         error = polar_error(pose, target)
@@ -128,10 +127,10 @@ class Follower:
     def _detour(
         self,
         pose: Pose,
-        target: Pose,
         rho: float,
         bearing: float,
         trail: Sequence[tuple[float, float]],
+        standoff: float,
         k_rho: float,
     ) -> Twist:
         """Something is in the way: around it, or along its border."""
@@ -142,7 +141,7 @@ class Follower:
                 x, y = to_local(pose, *aim)
                 distance, bearing = math.hypot(x, y), math.atan2(y, x)
                 if trail and aim == trail[-1]:
-                    distance -= STANDOFF
+                    distance -= standoff
                     if distance <= 0.0:
                         return turn_towards(bearing, self._gains, self._body)
             side = self._side if aim is None else 0
@@ -206,4 +205,4 @@ class Follower:
             return Twist(0.0, self._escape_side * 0.6 * self._body.max_turn_rate)
         direction, free = choice
         speed = min(0.6, max(0.0, free) / REACTION) * max(0.0, math.cos(direction)) ** 2
-        return Twist(speed, max(-3.0, min(3.0, self._gains.k_alpha * direction)))
+        return Twist(speed, turn_towards(direction, self._gains, self._body).w)

@@ -1,4 +1,4 @@
-"""What a leader keeps about its followers and about strangers: acknowledgements, reports, acquaintances."""
+"""What a leader keeps about its followers and about strangers: answers, reports, acquaintances."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ LONGEST_PROBATION = 3
 
 @dataclass(slots=True)
 class Acquaintance:
-    """A robot outside the roster that was heard. streak: periods in a row; members: whom it speaks for."""
+    """A robot outside the roster that was heard. streak: periods in a row; last_period: their last."""
 
     streak: int
     last_period: int
@@ -26,6 +26,7 @@ class Leadership:
         self.roster = roster
         self.sequence = 0
         self.since_ns = now_ns
+        self.opened_ns = now_ns
         self.due_ns = now_ns
         self.reports: dict[int, Ack] = {}
         self._answered: dict[int, bool] = {}
@@ -64,6 +65,7 @@ class Leadership:
     def open_period(self, now_ns: int, period_ns: int) -> None:
         """The next commands go out now."""
         self.sequence += 1
+        self.opened_ns = now_ns
         self.due_ns = now_ns + period_ns
         self._answered = dict.fromkeys(self._answered, False)
 

@@ -11,7 +11,8 @@ not act on an old one. Three families of modes follow:
 - acting as leader: `leading`, or `alone` when it is the only member;
 - following: `following`, `narrow` in the column, `border following` while an obstacle lies between the
   robot and its slot (it interrupts Algorithm 1 and resumes it, thesis 3.3.4);
-- without a leader: `lost leader` while the elected one is not heard, `joining` while asking to be taken in.
+- without a leader: `lost leader` while the elected one is not heard, `joining` while it asks to be
+  taken in.
 `stopped` is where a mission ends: the leader at its goal, a follower in its last slot, or a robot of
 profile `thesis` that hears nobody and is told to stop.
 """

@@ -8,7 +8,7 @@ to each follower once a period and counts those that do not answer. A follower t
 `leader_timeout` elects from the list that it has, and waits for the elected one (`waiting`) before it
 gives that one up too. Two leaders that hear each other form the union of their rosters; the union is
 the same whoever forms it, and its leader is its median. Whoever finds that a new roster has another
-leader tells everyone so in a Lost_Follower command (a hand-over), repeated until the new leader is heard.
+leader tells everyone so in a Lost_Follower command (a hand-over), repeated until that leader is heard.
 """
 
 from collections.abc import Iterable
@@ -165,7 +165,7 @@ class Protocol:
             self._on_lesser_leader(now_ns, pose, source, roster)
 
     def _obeys(self, source: int, roster: Roster) -> bool:
-        """Whether a roster that its own leader speaks for, and that lists this robot, is to be obeyed."""
+        """Whether a roster that its leader speaks for, and that lists this robot, is to be obeyed."""
         mine = self.roster
         if not self.open:
             return self.leadership is None and (mine is None or self.waiting or source == mine.leader)
@@ -370,7 +370,8 @@ class Protocol:
     def _command(
         self, order: Order, pose: Pose, lost: tuple[int, ...], trail: tuple[tuple[float, float], ...]
     ) -> Command:
-        assert self.roster is not None and self.leadership is not None
+        assert self.roster is not None
+        assert self.leadership is not None
         sequence = self.leadership.sequence
         return Command(order, self.roster, sequence, self.phase, self.narrow, pose, lost, trail)
 

@@ -12,18 +12,19 @@ from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map, wrap_angl
 from onehop.contracts.messages import Action, Note, Percept, Ranges
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Briefing
-from onehop.contracts.team import Mode, Shape, Status
+from onehop.contracts.team import Mode, Status
 from robot_agent.core.follower import IN_POSITION, Follower
 from robot_agent.core.formation import Formation, formation, width
 from robot_agent.core.gains import make_policy
+from robot_agent.core.mates import Lookout
 from robot_agent.core.messages import Phase
 from robot_agent.core.modes import Event
-from robot_agent.core.planning import make_pathfinder
-from robot_agent.core.planning.guidance import Pathfinder, Progress
+from robot_agent.core.planning import Pathfinder, Progress, make_pathfinder
 from robot_agent.core.protocol import NANOSECONDS, Protocol
 from robot_agent.core.safety import SafetyFilter
 from robot_agent.core.scan import Fan
 from robot_agent.core.tracking import turn_towards
+from robot_agent.core.trail import behind
 
 PathfinderMaker = Callable[[Briefing, Pose, np.random.Generator], Pathfinder]
 
@@ -32,6 +33,9 @@ THESIS_THRESHOLD_BPS = 0.5333e6
 
 ALIGNED = 0.05
 """The leader faces the goal within this angle before it gathers the team [rad] (thesis 3.4.1)."""
+
+MATE_TOLERANCE = 1.0
+"""A round thing this near to where a follower can be by its last report is that follower [m]."""
 
 TRAIL_STEP, TRAIL_POINTS = 1.0, 24
 """Spacing [m] and number of the points of its way that a leader tells."""
@@ -53,6 +57,7 @@ class Robot:
         fan = Fan(body)
         dodge = tuple(float(share) for share in self._rng.random(64))
         self._follower = Follower(body, briefing.gains, fan, dodge)
+        self._lookout = Lookout(body, fan)
         self._safety = SafetyFilter(body, fan, briefing.period_ns / NANOSECONDS)
         self._threshold = THESIS_THRESHOLD_BPS
         self._policy = make_policy(briefing.gains, self._threshold)
@@ -83,7 +88,7 @@ class Robot:
         protocol.receive(now_ns, pose, self._in_position, percept.inbox)
         nearest = float(percept.scan.min())
         if protocol.leading:
-            twist = self._lead(protocol, pose, percept.scan)
+            twist = self._lead(protocol, now_ns, pose, percept.scan)
         else:
             twist = self._follow(protocol, now_ns, pose, percept.scan, nearest)
         twist = self._safety.filtered(twist, percept.scan, nearest)
@@ -130,7 +135,7 @@ class Robot:
 
     # leading
 
-    def _lead(self, protocol: Protocol, pose: Pose, scan: Ranges) -> Twist:
+    def _lead(self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges) -> Twist:
         briefing = self._briefing
         goal = briefing.goal
         self._target = (goal.x, goal.y)
@@ -148,7 +153,7 @@ class Robot:
         if self._pathfinder is None:
             self._pathfinder = self._make_pathfinder(briefing, pose, self._rng)
             self._follower.halt()
-        guidance = self._pathfinder.step(pose, scan, frozenset())
+        guidance = self._pathfinder.step(pose, scan, self._mates(protocol, now_ns, pose, scan))
         self._notes.extend(guidance.notes)
         self._remaining = guidance.remaining
         if guidance.progress is not Progress.DRIVING:
@@ -158,6 +163,16 @@ class Robot:
             return STANDSTILL
         self._watch_passage(protocol, guidance.passage)
         return guidance.twist
+
+    def _mates(self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges) -> frozenset[int]:
+        """Beams that hit followers, as far as their reports say where they may be by now."""
+        leadership = protocol.leadership
+        if leadership is None or not leadership.reports:
+            return frozenset()
+        age = (now_ns - leadership.opened_ns) / NANOSECONDS
+        reach = self._briefing.body.max_speed * age + MATE_TOLERANCE
+        places = [(report.pose.x, report.pose.y) for report in leadership.reports.values()]
+        return self._lookout.beams(pose, scan, places, reach)
 
     def _mark(self, pose: Pose) -> None:
         """Remember the leader's own way."""
@@ -207,7 +222,8 @@ class Robot:
         self._in_position = self._error <= IN_POSITION
         if self._at_rest(protocol):
             return STANDSTILL
-        twist = self._follower.step(pose, scan, nearest, target, link.trail, self._k_rho)
+        standoff = math.hypot(target.x - leader.x, target.y - leader.y)
+        twist = self._follower.step(pose, scan, nearest, target, link.trail, standoff, self._k_rho)
         self._tell_border(protocol)
         return twist
 
@@ -218,11 +234,13 @@ class Robot:
             x, y = to_map(leader, -self._briefing.team.spacing, 0.0)
         else:
             slot = shape.slot(self._briefing.robot)
+            if protocol.narrow and len(protocol.link.trail) > 1:
+                return behind(leader, protocol.link.trail, -slot.x)
             x, y = to_map(leader, slot.x, slot.y)
         return Pose(x, y, leader.heading)
 
     def _measure(self, protocol: Protocol, now_ns: int) -> None:
-        """Throughput of each Next, 0 for each that is missing, and the gain that follows (thesis 3.5)."""
+        """Throughput of each Next, 0 for a missing one, and the gain that follows (thesis 3.5)."""
         link = protocol.link
         if link.next_ns > self._next_ns:
             self._next_ns = link.next_ns

@@ -38,7 +38,7 @@ class SafetyFilter:
         """Nothing farther away than this can limit a tick [m]."""
 
     def filtered(self, twist: Twist, scan: Ranges, nearest: float) -> Twist:
-        """The same twist, or a slower one of the same turn rate. nearest: the least range of the scan [m]."""
+        """The same twist, or a slower one of the same turn rate. nearest: least range in scan [m]."""
         if twist.v <= 0.0 or nearest > self.reach:
             return twist
         near = np.flatnonzero(scan < self.reach)

@@ -9,7 +9,7 @@ the arc is then still the one that the controller meant; the thesis has no limit
 """
 
 import math
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.scenario import GainsSection, RobotSection
@@ -18,7 +18,7 @@ HALF_TURN = math.pi / 2.0
 
 
 class PolarError(NamedTuple):
-    """Where the target is: distance rho [m], its bearing alpha, and the heading still to turn beta [rad].
+    """Where the target is: distance rho [m], bearing alpha, and heading still to turn beta [rad].
 
     reverse: the target is behind, alpha in (3.9), so that the robot would have to back up.
     """
