@@ -128,6 +128,14 @@ def bundle_from_json(text: str, files: Mapping[str, bytes], origin: str) -> Bund
     return Bundle(_structure(table, origin), dict(files))
 
 
+def changed(scenario: Scenario, settings: Iterable[str]) -> Scenario:
+    """The same scenario with some keys changed ("key.path=value"). Raises ScenarioError."""
+    table = json.loads(json.dumps(as_map(scenario)))
+    for setting in settings:
+        _apply(table, setting)
+    return _structure(table, "--set")
+
+
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_bytes().decode())
