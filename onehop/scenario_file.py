@@ -7,7 +7,8 @@ says what would be right. The world's own checks (a start inside an obstacle) co
 import difflib
 import json
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
@@ -106,6 +107,17 @@ def load(
     table.setdefault("name", path.stem)
     scenario = _structure(table, str(path))
     return Bundle(scenario, _read_map_files(scenario.map.file, directory, str(path)))
+
+
+@contextmanager
+def in_file(path: Path) -> Iterator[None]:
+    """Say the scenario's file with what the world finds wrong with its values."""
+    try:
+        yield
+    except ScenarioError as error:
+        if error.where.startswith(str(path)):
+            raise
+        raise ScenarioError(f"{path}: {error.where}", error.problem, error.remedy) from None
 
 
 def point(text: str | None, option: str) -> tuple[float, float] | None:

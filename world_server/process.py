@@ -48,7 +48,8 @@ def main() -> int:
         scenario_file.point(options.goal, "--goal"),
     )
     walls = load_map(bundle.scenario.map, bundle.files)
-    world = World(bundle.scenario, walls)
+    with scenario_file.in_file(options.scenario):
+        world = World(bundle.scenario, walls)
     world.observe()  # compiles or loads the laser kernel before anyone waits for it
     names = [topics.RADIO, topics.RECORDER, topics.OPERATOR]
     names += [topics.robot_name(i) for i in bundle.scenario.team.robots]

@@ -42,7 +42,8 @@ def run(
     folder.mkdir(parents=True, exist_ok=True)
     with Display(bundle.scenario) as display:
         if driver == "inline":
-            summary = _run_inline(bundle, folder, record, display.show)
+            with scenario_file.in_file(scenario):
+                summary = _run_inline(bundle, folder, record, display.show)
         else:
             from onehop.mission import launcher
 

@@ -292,7 +292,8 @@ class RadioSection:
 class ClockSection:
     """mode: lockstep, everyone waits for its inputs of a tick. period_ms: length of a tick.
 
-    limit_s: simulated time after which a mission has failed. silence_s: wall-clock time after which a process that says nothing is given up [s].
+    limit_s: simulated time after which a mission has failed.
+    silence_s: wall-clock time after which a process that says nothing is given up [s].
     """
 
     mode: Literal["lockstep"] = "lockstep"
