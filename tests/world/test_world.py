@@ -8,7 +8,13 @@ import pytest
 from onehop.contracts.geometry import Twist
 from onehop.contracts.messages import Action, Contact, Departure, Note, Transmission
 from onehop.contracts.scenario import (
-    ClockSection, FaultSection, GoalSection, MapSection, Scenario, StartSection, TeamSection,
+    ClockSection,
+    FaultSection,
+    GoalSection,
+    MapSection,
+    Scenario,
+    StartSection,
+    TeamSection,
 )  # fmt: skip
 from onehop.contracts.team import Mode, Shape, Status
 from world_server.core.mapfile import load_map
