@@ -1,8 +1,8 @@
 """The recorder process: everything on the bus into one MCAP file, as it happens.
 
-World and radio hand it one batch per tick. It writes complete ticks in canonical order, flushes them to the
-operating system and tells the world how far the file is; the world never runs more than a few ticks ahead.
-With --no-file it only makes the digest.
+World and radio hand it one batch per tick. It writes complete ticks in canonical order, flushes them to
+the operating system and tells the world how far the file is; the world never runs more than a few ticks
+ahead. With --no-file it only makes the digest.
 """
 
 import json
@@ -32,7 +32,9 @@ LAST_WORDS_S = 2.0
 def main() -> int:
     parser = node.arguments("onehop.recorder", "Writes the log of a mission.")
     node.add_connect(parser)
-    parser.add_argument("--out", type=Path, required=True, help="folder for mission.mcap and summary.json")
+    parser.add_argument(
+        "--out", type=Path, required=True, help="folder for mission.mcap and summary.json"
+    )
     parser.add_argument("--no-file", action="store_true", help="make the digest, write no log")
     options = parser.parse_args()
     node.start(options)

@@ -7,18 +7,19 @@ says what would be right. The world's own checks (a start inside an obstacle) co
 import difflib
 import json
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
 import cattrs
 from cattrs import AttributeValidationNote, IterableValidationNote
-from world_server.core.maps import further_files
 
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.scenario import Scenario
 from onehop.drive.codec import as_map
+from world_server.core.mapfile import map_files
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +52,10 @@ def _scalar(value: Any, kind: Any) -> Any:
     return value
 
 
+def _is_literal(kind: Any) -> bool:
+    return bool(get_origin(kind) == Literal)
+
+
 def _choice(value: Any, kind: Any) -> Any:
     choices = get_args(kind)
     if value not in choices:
@@ -62,7 +67,7 @@ def _make_converter() -> cattrs.Converter:
     converter = cattrs.Converter(forbid_extra_keys=True)
     for kind in (bool, int, float, str):
         converter.register_structure_hook(kind, _scalar)
-    converter.register_structure_hook_func(lambda kind: get_origin(kind) is Literal, _choice)
+    converter.register_structure_hook_func(_is_literal, _choice)
     return converter
 
 
@@ -104,6 +109,17 @@ def load(
     return Bundle(scenario, _read_map_files(scenario.map.file, directory, str(path)))
 
 
+@contextmanager
+def in_file(path: Path) -> Iterator[None]:
+    """Say the scenario's file with what the world finds wrong with its values."""
+    try:
+        yield
+    except ScenarioError as error:
+        if error.where.startswith(str(path)):
+            raise
+        raise ScenarioError(f"{path}: {error.where}", error.problem, error.remedy) from None
+
+
 def point(text: str | None, option: str) -> tuple[float, float] | None:
     """The value of --start or --goal, "x,y" in metres. Raises ScenarioError."""
     if text is None:
@@ -122,6 +138,14 @@ def bundle_from_json(text: str, files: Mapping[str, bytes], origin: str) -> Bund
     except ValueError as error:
         raise ScenarioError(origin, f"not JSON ({error})", "an attachment written by onehop") from None
     return Bundle(_structure(table, origin), dict(files))
+
+
+def changed(scenario: Scenario, settings: Iterable[str]) -> Scenario:
+    """The same scenario with some keys changed ("key.path=value"). Raises ScenarioError."""
+    table = json.loads(json.dumps(as_map(scenario)))
+    for setting in settings:
+        _apply(table, setting)
+    return _structure(table, "--set")
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
@@ -149,7 +173,7 @@ def _read_map_files(name: str, directory: Path, origin: str) -> dict[str, bytes]
                 f"{location}: {error.strerror or 'cannot be read'}",
                 "a ROS map .yaml, a MovingAI .map, or polygons in the scenario",
             ) from None
-        wanted += [name for name in further_files(current, files[current]) if name not in files]
+        wanted += [name for name in map_files(current, files[current]) if name not in files]
     return files
 
 

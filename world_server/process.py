@@ -16,7 +16,7 @@ from onehop import scenario_file
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import Action, End, Outcome, Progress, RobotProgress, Truth
-from onehop.contracts.scenario import robot_briefing
+from onehop.contracts.scenario import RadioBriefing, robot_briefing
 from onehop.drive import node
 from onehop.drive.briefings import LogBriefing, radio_briefing
 from onehop.drive.bus import ALIVE, GONE, Bus, open_router
@@ -24,7 +24,7 @@ from onehop.drive.codec import decode, encode
 from onehop.drive.journal import WireMessage
 from onehop.drive.record import pack_record
 from onehop.scenario_file import Bundle
-from world_server.core.maps import load_map
+from world_server.core.mapfile import load_map
 from world_server.core.world import World
 
 RECORD_WINDOW = 5
@@ -48,12 +48,13 @@ def main() -> int:
         scenario_file.point(options.goal, "--goal"),
     )
     walls = load_map(bundle.scenario.map, bundle.files)
-    world = World(bundle.scenario, walls)
-    world.warm_up()
+    with scenario_file.in_file(options.scenario):
+        world = World(bundle.scenario, walls)
+    world.observe()  # compiles or loads the laser kernel before anyone waits for it
     names = [topics.RADIO, topics.RECORDER, topics.OPERATOR]
     names += [topics.robot_name(i) for i in bundle.scenario.team.robots]
     with open_router(options.mission, options.listen, names, options.credentials) as bus:
-        return _Host(bus, bundle, world, options.driver).serve()
+        return _Host(bus, bundle, world, radio_briefing(bundle.scenario, walls), options.driver).serve()
 
 
 def _options() -> argparse.Namespace:
@@ -71,14 +72,16 @@ def _options() -> argparse.Namespace:
 
 
 @dataclass
-class _Interrupted(Exception):
+class _InterruptedError(Exception):
     reason: str
 
 
 class _Host:
     """One mission as the world runs it."""
 
-    def __init__(self, bus: Bus, bundle: Bundle, world: World, driver: str) -> None:
+    def __init__(
+        self, bus: Bus, bundle: Bundle, world: World, radio: RadioBriefing, driver: str
+    ) -> None:
         self._bus = bus
         self._scenario = bundle.scenario
         self._world = world
@@ -89,10 +92,12 @@ class _Host:
         self._recorded = -1
         self._actions: dict[int, tuple[Action, bytes]] = {}
         self._awaited: set[int] = set()
+        self._fenced: dict[int, str] = {}
         self._stop: str | None = None
+        self._restarting = 0
         self._next_progress = 0.0
         self._briefings = {
-            topics.config(topics.RADIO): encode(radio_briefing(self._scenario, world.walls)),
+            topics.config(topics.RADIO): encode(radio),
             topics.config(topics.RECORDER): encode(
                 LogBriefing(driver, bundle.scenario_json(), tuple(sorted(bundle.files.items())))
             ),
@@ -121,8 +126,8 @@ class _Host:
             node.calm_garbage_collector()
             started = time.monotonic()
             outcome = self._run()
-        except _Interrupted as interruption:
-            outcome = self._world.abort(interruption.reason)
+        except _InterruptedError as interruption:
+            outcome = self._world.aborted(interruption.reason)
         wall_s = time.monotonic() - started
         self._put_end(encode(End(outcome, self._world.tick, wall_s)))
         self._await_farewell()
@@ -146,22 +151,20 @@ class _Host:
             self._hear(deadline)
             if time.monotonic() > deadline:
                 names = ", ".join(sorted(key.removeprefix(topics.alive("")) for key in missing))
-                raise _Interrupted(f"not started within {START_S:.0f} s: {names}")
+                raise _InterruptedError(f"not started within {START_S:.0f} s: {names}")
 
     def _run(self) -> Outcome:
-        while True:
-            self._restart_due()
+        outcome = None
+        while outcome is None:
             outcome = self._tick()
-            if outcome is not None:
-                return outcome
+        return outcome
 
     def _tick(self) -> Outcome | None:
         world = self._world
         truth = world.truth()
+        self._carry_out_faults(truth)
         encoded_truth = encode(truth)
         self._put_truth(encoded_truth)
-        for departure in truth.departures:
-            self._put_fate[departure.robot](b"")
         record: list[WireMessage] = [(topics.TRUTH, encoded_truth)]
         for i, observation in world.observe().items():
             encoded = encode(observation)
@@ -171,6 +174,9 @@ class _Host:
         record += [(topics.out(i), self._actions[i][1]) for i in sorted(self._actions)]
         self._put_record(pack_record(truth.tick, record))
         world.advance({i: self._actions[i][0] for i in sorted(self._actions)})
+        for i in sorted(self._fenced):
+            world.fence(i, self._fenced[i])
+        self._fenced.clear()
         self._report_progress(truth)
         return world.outcome()
 
@@ -184,11 +190,11 @@ class _Host:
         deadline = time.monotonic() + self._scenario.clock.silence_s
         while self._awaited or truth.tick - self._recorded > RECORD_WINDOW:
             if self._stop:
-                raise _Interrupted(self._stop)
+                raise _InterruptedError(self._stop)
             self._hear(deadline)
             if time.monotonic() > deadline:
                 if not self._awaited:
-                    raise _Interrupted("the recorder does not keep up")
+                    raise _InterruptedError("the recorder does not keep up")
                 for i in sorted(self._awaited):
                     self._fence(i, f"silent for {self._scenario.clock.silence_s:g} s")
 
@@ -213,7 +219,8 @@ class _Host:
         self._alive.discard(key)
         robot = self._names.get(key)
         if robot is not None:
-            self._fence(robot, "its process died")
+            if robot != self._restarting:
+                self._fence(robot, "its process died")
         elif key in (topics.alive(topics.RADIO), topics.alive(topics.RECORDER)):
             self._stop = f"the {key.removeprefix(topics.alive(''))} process died"
 
@@ -231,24 +238,39 @@ class _Host:
         self._actions[robot] = action, data
 
     def _fence(self, robot: int, why: str) -> None:
-        """Leave a robot out from the next tick on, unless its action of this tick has come already."""
+        """Leave a robot out from the next tick on; an action that it gave for this one still counts."""
         self._awaited.discard(robot)
-        self._world.fence(robot, why)
+        self._fenced.setdefault(robot, why)
 
-    def _restart_due(self) -> None:
-        """Scripted restarts: the world holds its tick until the new process is there."""
-        for i in self._world.due_restarts():
-            self._incarnations[i] += 1
-            key = topics.alive(topics.robot_name(i))
-            deadline = time.monotonic() + RESTART_S
-            while key in self._alive and time.monotonic() < deadline:
-                self._hear(deadline)
-            self._put_restart(str(i).encode())
-            while key not in self._alive:
-                self._hear(deadline)
-                if time.monotonic() > deadline:
-                    raise _Interrupted(f"robot {i} was not started again within {RESTART_S:.0f} s")
-            self._world.admit(i)
+    def _carry_out_faults(self, truth: Truth) -> None:
+        """End the processes of those who departed, start those anew that the script restarts.
+
+        The world holds its tick meanwhile, so a run with kills and restarts is as reproducible as one
+        without.
+        """
+        present = {presence.robot for presence in truth.present}
+        for departure in truth.departures:
+            if departure.robot not in present:
+                self._put_fate[departure.robot](b"")
+        for fault in self._world.due_faults():
+            if fault.kind == "restart":
+                for i in sorted(fault.robots):
+                    self._restart(i)
+
+    def _restart(self, robot: int) -> None:
+        key = topics.alive(topics.robot_name(robot))
+        self._incarnations[robot] += 1
+        self._put_fate[robot](b"")
+        self._restarting = robot
+        deadline = time.monotonic() + RESTART_S
+        while key in self._alive and time.monotonic() < deadline:
+            self._hear(deadline)
+        self._put_restart(str(robot).encode())
+        while key not in self._alive:
+            self._hear(deadline)
+            if time.monotonic() > deadline:
+                raise _InterruptedError(f"robot {robot} was not started again within {RESTART_S:.0f} s")
+        self._restarting = 0
 
     def _report_progress(self, truth: Truth) -> None:
         now = time.monotonic()

@@ -4,8 +4,6 @@ from collections.abc import Callable
 
 from radio_proxy.core.radio import Radio
 from robot_agent.core.robot import Robot
-from world_server.core.maps import load_map
-from world_server.core.world import World
 
 from onehop.contracts import topics
 from onehop.contracts.messages import Action, Outcome, percept
@@ -14,6 +12,8 @@ from onehop.drive.briefings import radio_briefing
 from onehop.drive.codec import encode
 from onehop.drive.journal import Journal, WireMessage
 from onehop.scenario_file import Bundle
+from world_server.core.mapfile import load_map
+from world_server.core.world import World
 
 Watcher = Callable[[World, dict[int, Action]], None]
 
@@ -27,8 +27,6 @@ def run(bundle: Bundle, journal: Journal | None, watch: Watcher | None = None) -
     robots: dict[tuple[int, int], Robot] = {}
     outcome = None
     while outcome is None:
-        for i in world.due_restarts():
-            world.admit(i)
         truth = world.truth()
         carried = radio.carry(truth)
         observations = world.observe()

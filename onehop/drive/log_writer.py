@@ -66,11 +66,11 @@ class LogWriter:
 
     def flush(self) -> None:
         """Hand everything so far to the operating system (not to the disk: no fsync)."""
-        self._writer.flush()
+        self._writer.flush()  # type: ignore[no-untyped-call]
 
     def close(self, summary: Mapping[str, Any] | None) -> None:
         """Finish the file; summary is what `onehop run` will print, None if there is none."""
         if summary is not None:
             self._writer.add_metadata("outcome", {"summary": json.dumps(summary, sort_keys=True)})
-        self._writer.finish()
+        self._writer.finish()  # type: ignore[no-untyped-call]
         self._stream.close()

@@ -1,4 +1,4 @@
-"""The processes of one mission as children of the launcher: started, restarted, ended, never left behind."""
+"""The processes of one mission: children of the launcher, started, restarted, ended."""
 
 import os
 import signal

@@ -15,7 +15,11 @@ class Process(NamedTuple):
 
 
 def summarize(
-    outcome: Outcome, wall_s: float, digest: str | None, log: str | None, processes: Iterable[Process] = ()
+    outcome: Outcome,
+    wall_s: float,
+    digest: str | None,
+    log: str | None,
+    processes: Iterable[Process] = (),
 ) -> dict[str, Any]:
     """The JSON object of `run`; wall_s is the time of the ticks alone, without start and end."""
     fields = as_map(outcome)

@@ -20,7 +20,8 @@ from robot_agent.core.planning.guidance import Guidance, Progress
 from robot_agent.core.planning.memory import CLOSED, OPENING, PLACE, WayPoints
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
-from robot_agent.core.planning.view import Afterimage, View, squared_distances
+from robot_agent.core.planning.survey import Survey
+from robot_agent.core.planning.view import NO_POINTS, Afterimage, View, squared_distances
 from robot_agent.core.scan import Fan, FloatArray
 
 GOAL = -2
@@ -54,6 +55,7 @@ class Escape:
         self.waypoint = (pose.x, pose.y)
         self.notes: list[Note] = []
         self.done: Progress = Progress.DRIVING
+        self.survey: Survey | None = None
 
     def step(self, pose: Pose, scan: Ranges, moving: frozenset[int]) -> Guidance:
         """See Pathfinder."""
@@ -103,7 +105,9 @@ class Escape:
         self._note_place(pose, reach)
         self._note_openings(view, roadmap, costs, known)
         self.passage = passage_width(view, 8.0 * self.section.inflation)
-        self._choose(pose, roadmap, costs, known, reach)
+        backtrack = self._choose(pose, roadmap, reach)
+        way = np.array(self.driver.way) if self.turn is None else NO_POINTS
+        self.survey = Survey(pose, samples, roadmap.points, roadmap.edges, way, backtrack)
 
     def _way_points_in_view(self, view: View) -> list[int]:
         numbers = self.memory.of_kind(PLACE, OPENING)
@@ -180,19 +184,15 @@ class Escape:
         at_rear &= np.hypot(*(points - view.origin).T) < 1.5 * self.spacing
         self.memory.kind[openings[~still & ~at_rear]] = CLOSED
 
-    def _choose(
-        self,
-        pose: Pose,
-        roadmap: RoadMap,
-        costs: FloatArray,
-        known: list[int],
-        reach: dict[int, tuple[int, float]],
-    ) -> None:
-        """The opening with the least g + h becomes the target, and the way towards it is taken."""
+    def _choose(self, pose: Pose, roadmap: RoadMap, reach: dict[int, tuple[int, float]]) -> bool:
+        """The opening with the least g + h becomes the target, and the way towards it is taken.
+
+        Says whether that leads back: over a place where the robot was before.
+        """
         if GOAL in reach:
             self.target = GOAL
-            self._take(pose, roadmap, reach[GOAL][0], reach[GOAL][1])
-            return
+            self._take(roadmap, *reach[GOAL])
+            return False
         self._arrive(pose)
         seeds = {n: cost for n, (_, cost) in sorted(reach.items())}
         to_place = math.dist((pose.x, pose.y), self.memory.xy[self.place])
@@ -202,7 +202,7 @@ class Escape:
         if best == NOTHING:
             self.done = Progress.NO_WAY
             self.notes.append(Note("no_way", {"way_points": self.memory.count}))
-            return
+            return False
         if best != self.target:
             self.target, self.tries = best, 0
             self.notes.append(
@@ -215,6 +215,7 @@ class Escape:
         while origin[chain[-1]] != -1:
             chain.append(origin[chain[-1]])
         self._go(pose, roadmap, chain, reach)
+        return len(chain) > 1
 
     def _best(self, cost: dict[int, float]) -> int:
         memory = self.memory
@@ -244,7 +245,7 @@ class Escape:
                 number in reach
                 and math.dist(here, self.memory.xy[number]) > 0.5 * self.section.inflation
             ):
-                self._take(pose, roadmap, reach[number][0], self.remaining)
+                self._take(roadmap, reach[number][0], self.remaining)
                 return
         ahead = [n for n in chain if math.dist(here, self.memory.xy[n]) > 0.9 * self.section.inflation]
         if not ahead:
@@ -275,7 +276,7 @@ class Escape:
             self.driver.turning = 0
         self.turn = point
 
-    def _take(self, pose: Pose, roadmap: RoadMap, point: int, remaining: float) -> None:
+    def _take(self, roadmap: RoadMap, point: int, remaining: float) -> None:
         way = roadmap.path(point)
         if way is None:
             return

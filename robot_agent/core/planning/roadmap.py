@@ -67,6 +67,7 @@ class RoadMap:
         distance2 = squared_distances(self.points, self.points)
         np.fill_diagonal(distance2, np.inf)
         k = min(NEIGHBOURS, n - 1)
+        self._pairs: tuple[Indices, Indices] = (np.empty(0, dtype=np.intp), np.empty(0, dtype=np.intp))
         if k < 1:
             self.neighbours: Indices = np.empty((n, 0), dtype=np.intp)
             self.lengths: FloatArray = np.empty((n, 0))
@@ -99,6 +100,7 @@ class RoadMap:
 
     def _store(self, a: Indices, b: Indices, length: FloatArray) -> None:
         """Adjacency as padded rows: neighbours (n, width), lengths (n, width) with inf as padding."""
+        self._pairs = a, b
         n = len(self.points)
         sources, targets = np.concatenate((a, b)), np.concatenate((b, a))
         order = np.lexsort((targets, sources))
@@ -110,6 +112,12 @@ class RoadMap:
         self.lengths = np.full((n, width), np.inf)
         self.neighbours[sources, slot] = targets
         self.lengths[sources, slot] = both
+
+    @property
+    def edges(self) -> FloatArray:
+        """All edges, (k, 4) x0, y0, x1, y1 [m]."""
+        a, b = self._pairs
+        return np.concatenate((self.points[a], self.points[b]), axis=1)
 
     def costs(self) -> FloatArray:
         """Length of the shortest way from the robot to every point, (n,) [m]; inf where there is none."""
