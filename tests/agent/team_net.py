@@ -14,6 +14,7 @@ from onehop.contracts.geometry import Pose, Twist, wrap_angle
 from onehop.contracts.messages import BROADCAST, Action, Note, Percept, Ranges, Reception
 from onehop.contracts.scenario import (
     Briefing,
+    ClockSection,
     GoalSection,
     MapSection,
     Scenario,
@@ -88,7 +89,11 @@ class TeamNet:
         self, team: TeamSection, delay: int = 1, goal: tuple[float, float] = (500.0, 0.0)
     ) -> None:
         self.scenario = Scenario(
-            name="net", goal=GoalSection(*goal), map=MapSection(width=1e3, height=1e3), team=team
+            name="net",
+            goal=GoalSection(*goal),
+            map=MapSection(width=1e3, height=1e3),
+            team=team,
+            clock=ClockSection(period_ms=PERIOD_MS),
         )
         self.tick = 0
         self.delay = delay
@@ -192,6 +197,11 @@ class TeamNet:
         self.cuts.clear()
         self.losing.clear()
 
+    def repeat(self, frame: Frame, ticks: int) -> None:
+        """A frame under way arrives once more, `ticks` later."""
+        delay = frame.due - self.tick + ticks
+        self._post(frame.source, frame.destination, frame.payload, frame.msdu_bytes, delay)
+
     def inject(self, source: int, receiver: int, payload: bytes) -> None:
         """A payload that no robot sent."""
         self._post(source, receiver, payload, 800, 0)
@@ -212,6 +222,11 @@ class TeamNet:
         """Whether all present robots obey one roster that is exactly them."""
         rosters = {(s.epoch, s.leader, s.members) for s in map(self.status, sorted(self.members))}
         return len(rosters) == 1 and next(iter(rosters))[2] == tuple(sorted(self.members))
+
+    def describe(self) -> str:
+        """Who thinks what, for a failed assertion."""
+        rows = [(i, self.status(i)) for i in sorted(self.members)]
+        return "; ".join(f"{i}: {s.mode.value} {s.epoch} {s.leader} {s.members}" for i, s in rows)
 
     def check(self) -> None:
         """Invariants of every tick: epochs, median, shape."""
