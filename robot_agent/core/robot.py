@@ -68,6 +68,8 @@ class Robot:
         self._formation: Formation | None = None
         self._formation_key: tuple[tuple[int, ...], bool] | None = None
         self._period_ns = round(briefing.team.next_period * NANOSECONDS)
+        self._slot_key: tuple[Pose, tuple[int, ...], bool, bool] | None = None
+        self._slot = Pose(0.0, 0.0, 0.0)
         self._trail: list[tuple[float, float]] = []
         self._in_position = False
         self._next_ns = 0
@@ -236,6 +238,12 @@ class Robot:
 
     def _slot_pose(self, protocol: Protocol, leader: Pose) -> Pose:
         """This robot's slot in the map frame, from the leader's last pose."""
+        key = (leader, protocol.members, protocol.narrow, protocol.mode is Mode.JOINING)
+        if key != self._slot_key:
+            self._slot_key, self._slot = key, self._placed(protocol, leader)
+        return self._slot
+
+    def _placed(self, protocol: Protocol, leader: Pose) -> Pose:
         shape = self._shape(protocol)
         if protocol.mode is Mode.JOINING or shape.leader == self._briefing.robot:
             x, y = to_map(leader, -self._briefing.team.spacing, 0.0)
