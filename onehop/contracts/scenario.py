@@ -175,7 +175,7 @@ class TeamSection:
     next_msdu_bytes: int = 800
     profile: Literal["team", "thesis"] = "team"
     orphan: Literal["stop", "solo"] = "stop"
-    successor_timeout: float = 2.0
+    successor_timeout: float = 1.0
     narrow_spacing: float = 1.5
     straggler_speed: float = 1.0
 
