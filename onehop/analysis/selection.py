@@ -1,7 +1,7 @@
 """Pick messages out of a log by bus key and tick, without unpacking the rest.
 
-A chunk whose ticks lie outside the range is not even decompressed, and a message of another key costs one
-look at its head. The layout of chunk, channel and message records is that of the MCAP specification; the
+A chunk whose ticks lie outside the range is not even decompressed, and a message of another key costs
+one look at its head. The layout of chunk, channel and message records is that of the MCAP specification; the
 framing around chunks, sound or torn, is the mcap library's.
 """
 

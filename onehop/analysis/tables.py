@@ -76,8 +76,7 @@ def _verdicts(ether: dict[str, Any], _: int) -> Iterator[Row]:
 
 
 def _control(ether: dict[str, Any], _: int) -> Iterator[Row]:
-    for kind, size in sorted(ether["control_bytes"].items()):
-        yield kind, size
+    yield from sorted(ether["control_bytes"].items())
 
 
 def _receptions(inbox: dict[str, Any], robot: int) -> Iterator[Row]:
