@@ -7,7 +7,8 @@ says what would be right. The world's own checks (a start inside an obstacle) co
 import difflib
 import json
 import tomllib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
@@ -108,6 +109,17 @@ def load(
     return Bundle(scenario, _read_map_files(scenario.map.file, directory, str(path)))
 
 
+@contextmanager
+def in_file(path: Path) -> Iterator[None]:
+    """Say the scenario's file with what the world finds wrong with its values."""
+    try:
+        yield
+    except ScenarioError as error:
+        if error.where.startswith(str(path)):
+            raise
+        raise ScenarioError(f"{path}: {error.where}", error.problem, error.remedy) from None
+
+
 def point(text: str | None, option: str) -> tuple[float, float] | None:
     """The value of --start or --goal, "x,y" in metres. Raises ScenarioError."""
     if text is None:
@@ -126,6 +138,14 @@ def bundle_from_json(text: str, files: Mapping[str, bytes], origin: str) -> Bund
     except ValueError as error:
         raise ScenarioError(origin, f"not JSON ({error})", "an attachment written by onehop") from None
     return Bundle(_structure(table, origin), dict(files))
+
+
+def changed(scenario: Scenario, settings: Iterable[str]) -> Scenario:
+    """The same scenario with some keys changed ("key.path=value"). Raises ScenarioError."""
+    table = json.loads(json.dumps(as_map(scenario)))
+    for setting in settings:
+        _apply(table, setting)
+    return _structure(table, "--set")
 
 
 def _read_toml(path: Path) -> dict[str, Any]:

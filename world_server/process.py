@@ -48,11 +48,10 @@ def main() -> int:
         scenario_file.point(options.goal, "--goal"),
     )
     walls = load_map(bundle.scenario.map, bundle.files)
-    world = World(bundle.scenario, walls)
+    with scenario_file.in_file(options.scenario):
+        world = World(bundle.scenario, walls)
     world.observe()  # compiles or loads the laser kernel before anyone waits for it
-    names = [topics.RADIO, topics.RECORDER, topics.OPERATOR]
-    names += [topics.robot_name(i) for i in bundle.scenario.team.robots]
-    with open_router(options.mission, options.listen, names, options.credentials) as bus:
+    with open_router(options.mission, options.listen, node.credentials()) as bus:
         return _Host(bus, bundle, world, radio_briefing(bundle.scenario, walls), options.driver).serve()
 
 
@@ -65,7 +64,6 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--start", metavar="X,Y")
     parser.add_argument("--goal", metavar="X,Y")
     parser.add_argument("--listen", required=True, metavar="ENDPOINT", help="e.g. tcp/127.0.0.1:7447")
-    parser.add_argument("--credentials", type=Path, help="file of name:password lines")
     parser.add_argument("--driver", default="processes", help="what the log calls this way of running")
     return parser.parse_args()
 

@@ -8,9 +8,9 @@ nothing may depend on that order. Liveliness changes land in the same queue as (
 import json
 import queue
 import secrets
+import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
@@ -22,7 +22,7 @@ from onehop.contracts.errors import MissionError
 ALIVE = b"alive"
 GONE = b"gone"
 
-CONNECT_TIMEOUT_MS = 20_000
+CONNECT_TIMEOUT_MS = 60_000
 """How long a client waits for the router to appear."""
 
 LEASE_MS = 3000
@@ -145,10 +145,8 @@ class Bus:
             return None
 
 
-def open_router(
-    mission: str, endpoint: str, names: Iterable[str] = (), credentials: Path | None = None
-) -> Bus:
-    """The world's session. credentials: a file of name:password lines; without it anyone may speak."""
+def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | None = None) -> Bus:
+    """The world's session. credentials: passwords by name; without them anyone may say anything."""
     settings: dict[str, Any] = {
         "mode": "router",
         "listen/endpoints": [endpoint],
@@ -157,14 +155,18 @@ def open_router(
         "scouting/gossip/enabled": False,
         "transport/shared_memory/enabled": False,
     }
-    if credentials is not None:
+    if credentials is None:
+        return Bus(_open(settings), mission)
+    with tempfile.NamedTemporaryFile("w", prefix="onehop-") as dictionary:  # readable by its owner only
+        dictionary.writelines(f"{name}:{word}\n" for name, word in credentials.items())
+        dictionary.flush()
         settings["transport/auth/usrpwd"] = {
             "user": topics.WORLD,
             "password": secrets.token_hex(16),
-            "dictionary_file": str(credentials),
+            "dictionary_file": dictionary.name,
         }
-        settings["access_control"] = _access_control(mission, names)
-    return Bus(_open(settings), mission)
+        settings["access_control"] = _access_control(mission, credentials)
+        return Bus(_open(settings), mission)
 
 
 def open_client(

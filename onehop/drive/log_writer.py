@@ -8,12 +8,13 @@ time on a fixed epoch, sequence is the tick.
 
 import json
 from collections.abc import Mapping
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+import numpy
 from mcap.writer import CompressionType, Writer
 
+from onehop import __version__
 from onehop.contracts import topics
 from onehop.contracts.messages import WIRE_VERSION
 from onehop.drive.journal import WireMessage
@@ -32,15 +33,15 @@ class LogWriter:
     def __init__(self, path: Path, bundle: Bundle, driver: str) -> None:
         self._stream = path.open("wb")
         self._writer = Writer(self._stream, chunk_size=1 << 20, compression=CompressionType.ZSTD)
-        self._writer.start(profile="", library=f"onehop {version('onehop')}")
+        self._writer.start(profile="", library=f"onehop {__version__}")
         self._period_ns = bundle.scenario.clock.period_ns
         self._channels: dict[str, int] = {}
         self._writer.add_metadata(
             "onehop",
             {
                 "wire_version": str(WIRE_VERSION),
-                "onehop": version("onehop"),
-                "numpy": version("numpy"),
+                "onehop": __version__,
+                "numpy": numpy.__version__,
                 "scenario": bundle.scenario.name,
                 "seed": str(bundle.scenario.seed),
                 "driver": driver,

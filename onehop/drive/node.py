@@ -16,6 +16,9 @@ from onehop.drive.bus import Bus, open_client
 PASSWORD_VARIABLE = "ONEHOP_PASSWORD"
 """Environment variable with a process's password; an argument would show in ps."""
 
+CREDENTIALS_VARIABLE = "ONEHOP_CREDENTIALS"
+"""Environment variable of the world: all names and passwords, as name:password words."""
+
 BRIEFING_TIMEOUT_S = 30.0
 
 
@@ -43,6 +46,12 @@ def start(options: argparse.Namespace) -> None:
 def connect(options: argparse.Namespace, name: str) -> Bus:
     """Open this process's session with its own identity."""
     return open_client(options.mission, options.connect, name, os.environ.get(PASSWORD_VARIABLE))
+
+
+def credentials() -> dict[str, str] | None:
+    """The world's list of passwords; None when it was given none, and then anyone may speak."""
+    words = os.environ.get(CREDENTIALS_VARIABLE)
+    return None if words is None else dict(word.split(":", 1) for word in words.split())
 
 
 def briefing(bus: Bus, name: str) -> bytes:

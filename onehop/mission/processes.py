@@ -11,7 +11,7 @@ from pathlib import Path
 
 from onehop.contracts import topics
 from onehop.drive.bus import make_credentials
-from onehop.drive.node import PASSWORD_VARIABLE
+from onehop.drive.node import CREDENTIALS_VARIABLE, PASSWORD_VARIABLE
 from onehop.mission.summary import Process
 
 GRACE_S = 3.0
@@ -38,10 +38,6 @@ class Family:
         self._folder = folder
         names = [topics.RADIO, topics.RECORDER, topics.OPERATOR, *map(topics.robot_name, robots)]
         self._passwords = make_credentials(names)
-        self._credentials = folder / "credentials"
-        descriptor = os.open(self._credentials, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
-        with os.fdopen(descriptor, "w") as stream:
-            stream.writelines(f"{name}:{word}\n" for name, word in self._passwords.items())
         self._lifeline, self._keep_open = os.pipe()
         self.children: dict[str, subprocess.Popen[bytes]] = {}
         self.processes: list[Process] = []
@@ -53,15 +49,13 @@ class Family:
         self.end()
         os.close(self._keep_open)
         os.close(self._lifeline)
-        self._credentials.unlink(missing_ok=True)
 
     @property
     def operator_password(self) -> str:
         return self._passwords[topics.OPERATOR]
 
     def start_world(self, arguments: Sequence[str]) -> None:
-        listen = ["--listen", self._endpoint, "--credentials", str(self._credentials)]
-        self._start(topics.WORLD, "world_server", [*arguments, *listen])
+        self._start(topics.WORLD, "world_server", [*arguments, "--listen", self._endpoint])
 
     def start_radio(self) -> None:
         self._start(topics.RADIO, "radio_proxy", ["--connect", self._endpoint])
@@ -78,6 +72,9 @@ class Family:
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
         if name in self._passwords:
             environment[PASSWORD_VARIABLE] = self._passwords[name]
+        else:
+            words = (f"{user}:{password}" for user, password in self._passwords.items())
+            environment[CREDENTIALS_VARIABLE] = " ".join(words)
         command = [sys.executable, "-m", module, "--mission", self._mission]
         with (self._folder / f"{name}.stderr").open("ab") as stderr:
             child = subprocess.Popen(
