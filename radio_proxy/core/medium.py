@@ -48,6 +48,7 @@ class Medium:
         self.field = place
         self.on_air: list[Emission] = []
         self._reservations: list[Reservation] = []
+        self._reserved_to = 0
         self._draws = draws
         self._sense_db = place.budget.carrier_sense_db
         self._threshold_db = place.budget.receive_threshold_db
@@ -70,10 +71,6 @@ class Medium:
         """Take a frame off the air."""
         self.on_air.remove(emission)
 
-    def senses(self, station: int, emission: Emission) -> bool:
-        """Whether a station's carrier sense reports this emission (its own always)."""
-        return emission.row[station] >= self._sense_db
-
     def is_busy(self, station: int) -> bool:
         """Physical carrier sense (802.11-1999, 15.4.8.4, mode 2: jams carry no DSSS signal)."""
         return any(emission.row[station] >= self._sense_db for emission in self.on_air)
@@ -85,6 +82,7 @@ class Medium:
         self._reservations = [r for r in self._reservations if r.until > now]
         reservation = Reservation(until, emission, source, receiver)
         self._reservations.append(reservation)
+        self._reserved_to = max(self._reserved_to, until)
         return reservation
 
     def release(self, reservation: Reservation) -> None:
@@ -95,6 +93,8 @@ class Medium:
     def reserved_until(self, station: int, now: int) -> int:
         """End of the reservations that a station heard, `now` when there is none [ns]."""
         until = now
+        if self._reserved_to <= now:
+            return now
         for reservation in self._reservations:
             if (
                 reservation.until > until

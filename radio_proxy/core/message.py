@@ -1,6 +1,6 @@
 """A data message on its way from robot to robot, and what is on record about it until it is settled."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from onehop.contracts.messages import Fate, Verdict
 from radio_proxy.core.propagation import SILENT_DB
@@ -92,8 +92,10 @@ class Data:
 
     def tried(self, attempts: int) -> "Data":
         """The same copy after that many attempts at the next hop."""
-        return replace(self, attempts=(*self.attempts, attempts))
+        tried = (*self.attempts, attempts)
+        return Data(self.message, self.path, tried, self.route, self.salvaged)
 
     def moved(self, holder: int, attempts: int) -> "Data":
         """The copy that the next robot holds."""
-        return replace(self, path=(*self.path, holder), attempts=(*self.attempts, attempts))
+        path, tried = (*self.path, holder), (*self.attempts, attempts)
+        return Data(self.message, path, tried, self.route, self.salvaged)

@@ -23,12 +23,13 @@ from onehop.contracts.messages import (
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import RadioBriefing, RadioSection
 from radio_proxy.core.airtime import dsss
-from radio_proxy.core.dcf import EVERYONE, Dcf, Frame
+from radio_proxy.core.contention import EVERYONE, Frame
+from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.error_rates import bit_error_rate
 from radio_proxy.core.medium import Emission, Medium
 from radio_proxy.core.message import Data, Message
-from radio_proxy.core.propagation import Field, link_budget
+from radio_proxy.core.propagation import OWN_DB, Field, link_budget
 from radio_proxy.core.routing.direct import DirectRouter
 from radio_proxy.core.routing.interface import Router
 from radio_proxy.core.routing.mrdv import MrdvRouter
@@ -267,7 +268,17 @@ class Radio:
             packet.message.copies += 1
             self._note_link(packet, frame)
             packet = packet.moved(holder, frame.attempts)
+        else:
+            self._overhear(packet, sender, holder)
         self._cards[holder].router.on_packet(packet, self._robots[sender], now)
+
+    def _overhear(self, packet: object, sender: int, holder: int) -> None:
+        """Control packets are heard by everyone whose mean SNR allows it."""
+        row = self._field.row(sender)
+        threshold_db = self._field.budget.receive_threshold_db
+        for robot in sorted(self._cards):
+            if robot != holder and threshold_db <= row[self._index[robot]] < OWN_DB:
+                self._cards[robot].router.on_overheard(packet)
 
     def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:
         robot = self._robots[sender]

@@ -85,6 +85,9 @@ class MrdvRouter:
             self._report(self.table.heed_error(sender, packet.lost, now), now)
         self._flush(sender, now)
 
+    def on_overheard(self, packet: object) -> None:
+        """Others' control packets say nothing that this protocol uses."""
+
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:  # noqa: ARG002
         self.table.refresh(next_hop, now)
 

@@ -1,11 +1,12 @@
 """MRSR: DSR (RFC 4728) whose ROUTE REQUESTs are passed on with a probability (thesis 3.7.2).
 
-Left out, as the RFC allows: flow state, promiscuous listening and what builds on it (route shortening,
-gratuitous replies, giving up a reply that another robot has made needless), piggybacking. Route
-maintenance is the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
+Left out, as the RFC allows: flow state, automatic route shortening, piggybacking. Route maintenance is
+the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
 
 Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
-flag for normal forwarding. At the origin itself a message is searched for twice at most.
+flag for normal forwarding. At the origin itself a message is searched for twice at most. A robot that
+waits to reply out of its cache listens for others' replies, not for the origin's first data (8.2.5),
+because replies are the only frames of others that a card hands up here.
 """
 
 from collections import deque
@@ -61,6 +62,7 @@ class MrsrRouter:
         self._buffered = 0
         self._seen: dict[int, deque[tuple[int, int]]] = {}
         self._blacklist: dict[int, int] = {}
+        self._pending: dict[tuple[int, int], int] = {}
 
     def submit(self, data: Data, now: int) -> None:
         if data.message.destination in self._searches or not self._send_along_cache(data, now):
@@ -82,6 +84,13 @@ class MrsrRouter:
             self.cache.forget_link(packet.a, packet.b)
             if packet.back[-1] != self._me:
                 self._host.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
+
+    def on_overheard(self, packet: object) -> None:
+        """Another robot's reply that is as short makes one's own needless (RFC 4728, 8.2.5)."""
+        if isinstance(packet, Rrep):
+            mine = self._pending.get((packet.found[0], packet.number))
+            if mine is not None and len(packet.found) <= mine:
+                del self._pending[packet.found[0], packet.number]
 
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
         """A confirmed link needs no mark: a path holds until it fails or is too old."""
@@ -211,9 +220,8 @@ class MrsrRouter:
         route = (*request.route, self._me)
         self._learn(route, now)
         if request.target == self._me:
-            self._reply_after(
-                round(self._host.uniform() * BROADCAST_JITTER_NS), Rrep(route, route[::-1]), now
-            )
+            delay = round(self._host.uniform() * BROADCAST_JITTER_NS)
+            self._host.at(now + delay, self._send_rrep, Rrep(request.number, route, route[::-1]))
             return
         seen = self._seen.setdefault(request.origin, deque(maxlen=REQUEST_IDS))
         if (request.number, request.target) in seen:
@@ -221,9 +229,10 @@ class MrsrRouter:
         seen.append((request.number, request.target))
         cached = self.cache.find(request.target, now)
         if cached is not None and not set(request.route) & set(cached):
-            found = (*request.route, *cached)
-            delay = BROADCAST_JITTER_NS * (len(found) - 2 + self._host.uniform())
-            self._reply_after(round(delay), Rrep(found, route[::-1]), now)
+            reply = Rrep(request.number, (*request.route, *cached), route[::-1])
+            self._pending[request.origin, request.number] = len(reply.found)
+            delay = BROADCAST_JITTER_NS * (len(reply.found) - 2 + self._host.uniform())
+            self._host.at(now + round(delay), self._send_unless_needless, reply)
         elif request.ttl > 1:
             self._pass_on(replace(request, route=route, ttl=request.ttl - 1), now)
 
@@ -237,9 +246,9 @@ class MrsrRouter:
     def _send_rreq(self, request: Rreq, now: int) -> None:
         self._host.send(request, BROADCAST, request.size_bytes, "rreq", now)
 
-    def _reply_after(self, delay: int, reply: Rrep, now: int) -> None:
-        """Every replier waits a little, longer routes longer (RFC 4728, 8.2.4 and 8.2.5)."""
-        self._host.at(now + delay, self._send_rrep, reply)
+    def _send_unless_needless(self, reply: Rrep, now: int) -> None:
+        if self._pending.pop((reply.found[0], reply.number), None) is not None:
+            self._send_rrep(reply, now)
 
     def _send_rrep(self, reply: Rrep, now: int) -> None:
         self._host.send(reply, after(reply.back, self._me), reply.size_bytes, "rrep", now)
