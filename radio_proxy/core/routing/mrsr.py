@@ -6,10 +6,10 @@ the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRex
 Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
 flag for normal forwarding. At the origin itself a message is searched for twice at most. A robot that
 waits to reply out of its cache listens for others' replies, not for the origin's first data (8.2.5),
-because replies are the only frames of others that a card hands up here.
+because replies are the only frames of others that a card hands up here. A target answers the copies of a
+request that came no farther than the first one, because in one cell every neighbour passes one on.
 """
 
-from collections import deque
 from dataclasses import dataclass, field, replace
 
 from onehop.contracts.messages import BROADCAST, Fate
@@ -60,7 +60,7 @@ class MrsrRouter:
         self._number = host.incarnation << 16
         self._searches: dict[int, Search] = {}
         self._buffered = 0
-        self._seen: dict[int, deque[tuple[int, int]]] = {}
+        self._seen: dict[int, dict[int, int]] = {}
         self._blacklist: dict[int, int] = {}
         self._pending: dict[tuple[int, int], int] = {}
 
@@ -219,22 +219,32 @@ class MrsrRouter:
             return
         route = (*request.route, self._me)
         self._learn(route, now)
+        first_length = self._first_length(request, len(route))
         if request.target == self._me:
-            delay = round(self._host.uniform() * BROADCAST_JITTER_NS)
-            self._host.at(now + delay, self._send_rrep, Rrep(request.number, route, route[::-1]))
+            if not first_length or len(route) <= first_length:
+                delay = round(self._host.uniform() * BROADCAST_JITTER_NS)
+                self._host.at(now + delay, self._send_rrep, Rrep(request.number, route, route[::-1]))
             return
-        seen = self._seen.setdefault(request.origin, deque(maxlen=REQUEST_IDS))
-        if (request.number, request.target) in seen:
+        if first_length:
             return
-        seen.append((request.number, request.target))
         cached = self.cache.find(request.target, now)
         if cached is not None and not set(request.route) & set(cached):
             reply = Rrep(request.number, (*request.route, *cached), route[::-1])
             self._pending[request.origin, request.number] = len(reply.found)
-            delay = BROADCAST_JITTER_NS * (len(reply.found) - 2 + self._host.uniform())
-            self._host.at(now + round(delay), self._send_unless_needless, reply)
+            wait = BROADCAST_JITTER_NS * (len(reply.found) - 2 + self._host.uniform())
+            self._host.at(now + round(wait), self._send_unless_needless, reply)
         elif request.ttl > 1:
             self._pass_on(replace(request, route=route, ttl=request.ttl - 1), now)
+
+    def _first_length(self, request: Rreq, length: int) -> int:
+        """Length of the route by which this request came first; 0 when it has not come before."""
+        seen = self._seen.setdefault(request.origin, {})
+        first = seen.setdefault(request.number, 0)
+        if not first:
+            seen[request.number] = length
+        if len(seen) > REQUEST_IDS:
+            del seen[next(iter(seen))]
+        return first
 
     def _pass_on(self, request: Rreq, now: int) -> None:
         if not request.normal:
