@@ -66,7 +66,7 @@ _PRESETS: dict[str, dict[str, float]] = {
     "thesis": {
         "tx_power_dbm": 10.0 * math.log10(200.0),
         "path_loss_exponent": 2.0,
-        "noise_dbm": -77.035,
+        "noise_dbm": 10.0 * math.log10(200.0) - free_space_loss_db(1.0, 2.4e9) - 60.0,
     },
     # 15 dBm and a noise figure of 7 dB: what a laptop card of 802.11b has.
     "physical": {
@@ -108,7 +108,9 @@ Wall = tuple[float, float, float, float]
 
 
 def walls_crossed(walls: tuple[Wall, ...], x0: float, y0: float, x1: float, y1: float) -> int:
-    """How many wall segments the straight path between two points crosses."""
+    """How many wall segments the straight path between two points crosses, whichever way it is taken."""
+    if (x0, y0) > (x1, y1):
+        x0, y0, x1, y1 = x1, y1, x0, y0
     count = 0
     for ax, ay, bx, by in walls:
         side_a = (x1 - x0) * (ay - y0) - (y1 - y0) * (ax - x0)
