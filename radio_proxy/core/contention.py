@@ -71,8 +71,8 @@ class Contention:
 
     def join_with_frame(self, station: Station, now: int, hold_back: bool) -> None:
         """A new head of a queue: at once after DIFS if the medium is idle, else after a backoff."""
-        busy = self._medium.is_busy(station.index)
-        if hold_back or busy or self._medium.reserved_until(station.index, now) > now:
+        medium, index = self._medium, station.index
+        if hold_back or medium.is_busy(index) or medium.reserved_until(index, now) > now:
             self.join(station, 0, now)
         else:
             station.slots = 0
@@ -84,18 +84,24 @@ class Contention:
         station.slots = self._draws.slots(self._timing.window(failures))
         self._enter(station, now)
 
-    def leave(self, station: Station) -> None:
-        """The station speaks, or it left."""
-        station.contending = station.fresh = False
-        station.slots = 0
-        station.access = NEVER
-        self._waiting.remove(station)
-        if station is self.next_station:
-            self._find_next()
+    def take_next(self) -> Station:
+        """The station whose wait is over; on_busy or on_silence must follow."""
+        station = self.next_station
+        assert station is not None
+        self._drop(station)
+        return station
 
-    def nobody_else_by(self, time_ns: int) -> bool:
-        """Whether no waiting station speaks up to that time."""
-        return self.next_access > time_ns
+    def leave(self, station: Station) -> None:
+        """The station left the mission."""
+        self._drop(station)
+        self.on_silence()
+
+    def on_silence(self) -> None:
+        """Nobody spoke: find who speaks next."""
+        self.next_access, self.next_station = NEVER, None
+        for station in self._waiting:
+            if station.access < self.next_access:
+                self.next_access, self.next_station = station.access, station
 
     def on_busy(self, emission: Emission, now: int) -> None:
         """An emission begins: who senses it keeps the slots that have not passed (9.2.5.2).
@@ -131,7 +137,13 @@ class Contention:
         for station in self._waiting:
             if station.access != NEVER and station.idle_start > now:
                 self._resume(station, now)
-        self._find_next()
+        self.on_silence()
+
+    def _drop(self, station: Station) -> None:
+        station.contending = station.fresh = False
+        station.slots = 0
+        station.access = NEVER
+        self._waiting.remove(station)
 
     def _enter(self, station: Station, now: int) -> None:
         station.contending = True
@@ -141,7 +153,10 @@ class Contention:
             self._resume(station, now)
 
     def _resume(self, station: Station, now: int) -> None:
-        station.idle_start = start = self._medium.reserved_until(station.index, now)
+        start = now
+        if self._medium.reserved_to > now:
+            start = self._medium.reserved_until(station.index, now)
+        station.idle_start = start
         station.access = access = start + self._timing.difs + station.slots * self._timing.slot
         if access < self.next_access:
             self.next_access, self.next_station = access, station
@@ -154,9 +169,3 @@ class Contention:
             station.fresh = False
             station.slots = self._draws.slots(self._timing.window(0))
         station.access = NEVER
-
-    def _find_next(self) -> None:
-        self.next_access, self.next_station = NEVER, None
-        for station in self._waiting:
-            if station.access < self.next_access:
-                self.next_access, self.next_station = station.access, station

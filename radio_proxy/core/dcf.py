@@ -132,17 +132,16 @@ class Dcf:
 
     def _on_access(self, now: int) -> None:
         """A station's wait is over: it speaks, or it has only finished its backoff after a success."""
-        station = self._contention.next_station
-        assert station is not None
-        self._contention.leave(station)
+        station = self._contention.take_next()
         frame = station.frame
         if frame is None:
+            self._contention.on_silence()
             return
         frame.attempts += 1
         fade_db = self.medium.fade_db() if self._fade_per_exchange else None
-        collides = not self._contention.nobody_else_by(now + self.timing.turnaround)
-        alone = not self.medium.on_air and not collides
+        alone = not self.medium.on_air
         emission = self._begin(station, fade_db, now)
+        alone = alone and self._contention.next_access > now + self.timing.turnaround
         if frame.receiver == EVERYONE:
             delay = delay_ns(self.medium.field.farthest(station.index))
             end = now + self.timing.broadcast(frame.msdu_bytes) + delay

@@ -77,9 +77,9 @@ class Message:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class Data:
-    """A copy of a message in the hands of one robot. path, attempts: how it came there.
+    """A copy of a message in the hands of one robot, never changed. path, attempts: how it came there.
 
     route, salvaged: the source route that it carries and how often it was mended (MRSR).
     """
