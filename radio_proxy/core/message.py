@@ -14,7 +14,8 @@ class Message:
     """One message of one robot. Times in ns, -1 until they are known.
 
     copies: how many robots hold it (an acknowledgement that is lost leaves two). searching_since: start
-    of the discovery that it waits for; searches: how many there were.
+    of the discovery that it waits for; searches: how many there were. loss: the copy
+    that was given up last, and why.
     """
 
     number: int
@@ -25,6 +26,7 @@ class Message:
     offered: int
     copies: int = 1
     settled: bool = False
+    loss: "tuple[Data, Fate] | None" = None
     first_service: int = -1
     discovery: int = 0
     discovery_before_service: int = 0

@@ -196,21 +196,26 @@ class Radio:
         return True
 
     def deliver(self, data: Data, now: int) -> None:
-        """A message reached its destination."""
+        """A message reached its destination; a second copy of it is dropped."""
         message = data.message
-        message.copies -= 1
-        if message.settled:
-            return
-        message.settled = True
-        self._settle(data, message.destination, Fate.DELIVERED, now)
+        if not message.settled:
+            message.settled = True
+            self._settle(data, message.destination, Fate.DELIVERED, now)
+        self._release(message)
 
     def drop(self, data: Data, fate: Fate) -> None:
-        """One copy of a message is gone; when it was the last one, the message is lost."""
-        message = data.message
+        """One copy of a message is given up."""
+        data.message.loss = (data, fate)
+        self._release(data.message)
+
+    def _release(self, message: Message) -> None:
+        """A robot holds a message no more; when it was the last one, the message is lost."""
         message.copies -= 1
         if message.settled or message.copies > 0:
             return
         message.settled = True
+        assert message.loss is not None
+        data, fate = message.loss
         if message.destination == BROADCAST:
             for robot in sorted(self._cards):
                 if robot != message.source:
@@ -283,7 +288,7 @@ class Radio:
     def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:
         robot = self._robots[sender]
         if isinstance(frame.packet, Data):
-            frame.packet.message.copies -= 1
+            self._release(frame.packet.message)
         self._cards[robot].router.on_acknowledged(frame.packet, self._robots[frame.receiver], now)
 
     def on_undeliverable(self, sender: int, frame: Frame, now: int) -> None:

@@ -59,7 +59,7 @@ class MrsrRouter:
         self._gamma_distance = gamma_distance
         self._number = host.incarnation << 16
         self._searches: dict[int, Search] = {}
-        self._buffered = 0
+        self.buffered = 0
         self._seen: dict[int, dict[int, int]] = {}
         self._blacklist: dict[int, int] = {}
         self._pending: dict[tuple[int, int], int] = {}
@@ -72,6 +72,10 @@ class MrsrRouter:
         waiting = [data for target in sorted(self._searches) for data in self._searches[target].waiting]
         self._searches.clear()
         return waiting
+
+    def remembered_requests(self) -> int:
+        """How many requests of others are remembered (at most 16 a robot, RFC 4728, 4.3)."""
+        return sum(len(seen) for seen in self._seen.values())
 
     def on_packet(self, packet: object, sender: int, now: int) -> None:
         if isinstance(packet, Data):
@@ -149,10 +153,10 @@ class MrsrRouter:
     # Discovery by the origin.
 
     def _wait(self, data: Data, now: int) -> None:
-        if self._buffered >= SEND_BUFFER:
+        if self.buffered >= SEND_BUFFER:
             self._host.drop(data, Fate.QUEUE_FULL)
             return
-        self._buffered += 1
+        self.buffered += 1
         data.message.begin_search(now)
         self._host.at(now + SEND_BUFFER_TIMEOUT_NS, self._on_waited_too_long, data)
         target = data.message.destination
@@ -201,7 +205,7 @@ class MrsrRouter:
         search.waiting.remove(data)
         if not search.waiting:
             del self._searches[search.target]
-        self._buffered -= 1
+        self.buffered -= 1
         data.message.end_search(now)
 
     def _flush(self, now: int) -> None:
