@@ -79,9 +79,9 @@ class Driver:
             w = math.copysign(limit, w)
         return Twist(speed, w)
 
-    def turn_to(self, pose: Pose, x: float, y: float) -> Twist:
-        """Turn in place towards a point."""
-        return self._turn(wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.heading))
+    def turn_to(self, pose: Pose, heading: float) -> Twist:
+        """Turn in place to a heading."""
+        return self._turn(wrap_angle(heading - pose.heading))
 
     def _turn(self, bearing: float) -> Twist:
         """Turn in place; the side is kept until the turn is done, or two sides could take turns forever."""
