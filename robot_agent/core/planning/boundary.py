@@ -15,6 +15,9 @@ from robot_agent.core.scan import FloatArray
 ARC_STEP = 0.35
 """Turn between two traced points of one arc [rad]."""
 
+ROUNDING = 0.02
+"""A point that the disc already overlaps by this turn is met at once [rad]."""
+
 MOST_PIVOTS = 400
 """Bound of one trace; the laser's reach ends it long before."""
 
@@ -32,15 +35,16 @@ def trace(view: View, start: FloatArray, radius: float, side: int) -> FloatArray
         return np.empty((0, 2))
     traced = [centre]
     angle = math.atan2(*(centre - points[contact])[::-1])
+    before = contact
     for _ in range(MOST_PIVOTS):
-        turn, following = _pivot(points, contact, angle, radius, side)
+        turn, following = _pivot(points, contact, before, angle, radius, side)
         steps = max(1, math.ceil(turn / ARC_STEP))
         arc = angle + side * turn * np.arange(1, steps + 1) / steps
         traced += list(points[contact] + radius * np.column_stack((np.cos(arc), np.sin(arc))))
         if following == contact or math.dist(traced[-1], view.origin) > view.fan.range:
             break
         angle = math.atan2(*(traced[-1] - points[following])[::-1])
-        contact = following
+        before, contact = contact, following
     return _known(view, np.array(traced), radius)
 
 
@@ -59,11 +63,11 @@ def settle(points: FloatArray, start: FloatArray, radius: float) -> tuple[FloatA
 
 
 def _pivot(
-    points: FloatArray, contact: int, angle: float, radius: float, side: int
+    points: FloatArray, contact: int, before: int, angle: float, radius: float, side: int
 ) -> tuple[float, int]:
     """How far the disc turns about its contact until it meets another point, and which [rad].
 
-    With no other point in reach it goes once around the contact.
+    before: the contact that it comes from. With no other point in reach it goes once around the contact.
     """
     offset = points - points[contact]
     distance = np.hypot(offset[:, 0], offset[:, 1])
@@ -73,13 +77,14 @@ def _pivot(
     bearing = np.arctan2(offset[near, 1], offset[near, 0])
     meets = bearing - side * np.arccos(distance[near] / (2.0 * radius))
     turn = (side * (meets - angle)) % (2.0 * math.pi)
-    turn[turn > 2.0 * math.pi - 0.02] = 0.0
+    turn[(turn > 2.0 * math.pi - ROUNDING) & (near != before)] = 0.0
     best = int(np.lexsort((-distance[near], turn))[0])
     return float(turn[best]), int(near[best])
 
 
 def _known(view: View, traced: FloatArray, radius: float) -> FloatArray:
-    """The traced places up to the first that is neither in view nor right beside the robot."""
-    beside = np.hypot(*(traced - view.origin).T) < 2.0 * radius
+    """The traced places up to the first that is neither in view nor, out of view, right beside the robot."""
+    bearing, distance = view.polar(traced)
+    beside = (distance < 2.0 * radius) & (np.abs(bearing) > view.fan.angles[-1])
     unknown = np.flatnonzero(~(view.visible(traced) | beside))
     return traced[: unknown[0]] if len(unknown) else traced

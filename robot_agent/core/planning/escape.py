@@ -51,7 +51,7 @@ class Escape:
         self.fan = Fan(briefing.body)
         self.inflation = self.section.inflation
         self.clearance, self.comfort = 1.04 * self.inflation, 1.4 * self.inflation
-        self.driver = Driver(self.body, self.fan, briefing.period_ns * 1e-9, self.inflation)
+        self.driver = Driver(self.body, self.fan, briefing.period_ns * 1e-9, 1.01 * self.inflation)
         self.openings = Openings(self.section.memory, self.goal, self.inflation)
         self.afterimage = Afterimage(6.0 * self.inflation)
         self.phase = Phase.SEARCH

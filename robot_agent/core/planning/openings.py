@@ -64,7 +64,9 @@ class Openings:
         self.gaze[rear] = wrap_angle(pose.heading + math.pi)
         self.memory.join(self.place, rear, laser_range)
 
-    def note(self, view: View, roadmap: RoadMap, costs: FloatArray, known: list[int], record: float) -> None:
+    def note(
+        self, view: View, roadmap: RoadMap, costs: FloatArray, known: list[int], record: float
+    ) -> None:
         """Close the openings that are in full view, and remember the new ones.
 
         record: least distance to the goal that the robot ever had [m].
@@ -72,7 +74,9 @@ class Openings:
         rim, outward = unseen_rim(view, 2.0 * self.inflation)
         self._refute(view, rim, known)
         near_rim = squared_distances(roadmap.points, rim)
-        candidates = np.flatnonzero(np.isfinite(costs) & (near_rim.min(axis=1, initial=np.inf) < self.rim**2))
+        candidates = np.flatnonzero(
+            np.isfinite(costs) & (near_rim.min(axis=1, initial=np.inf) < self.rim**2)
+        )
         candidates = candidates[candidates > 0]
         candidates = candidates[self._worth(roadmap.points[candidates], record)]
         value = costs[candidates] + np.hypot(*(roadmap.points[candidates] - self.goal).T)
@@ -157,5 +161,7 @@ def unseen_rim(view: View, gap: float) -> tuple[FloatArray, FloatArray]:
         near, long = (beam, beam + 1) if left_is_far else (beam + 1, beam)
         radius = np.arange(sight[near] + 0.25 * gap, sight[long], 0.7 * gap)
         points.append(view.origin + view.directions[long] * radius[:, None])
-        outward.append(np.full(len(radius), heading[long] + (-math.pi / 2 if left_is_far else math.pi / 2)))
+        outward.append(
+            np.full(len(radius), heading[long] + (-math.pi / 2 if left_is_far else math.pi / 2))
+        )
     return np.concatenate(points), np.concatenate(outward)
