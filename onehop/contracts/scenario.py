@@ -119,14 +119,20 @@ class RobotSection:
 class GainsSection:
     """Gains of the tracking controller (thesis eq. 3.11, 3.12) and the policy of k_rho.
 
-    policy: "throughput" (thesis: k_rho_max below the threshold) or "constant" (always k_rho_min).
+    policy: "throughput" (thesis: k_rho_max below the threshold), "constant" (always k_rho_min), or
+    "smooth" (ours: rises in proportion to the deficit of a filtered throughput, and to its fall).
+    threshold: "thesis" (0.5333e6 bit/s for all) or "ideal" (the same share of the ideal throughput at
+    this rate and size of Next). reverse: drive backwards to a slot that lies behind (thesis eq. 3.10);
+    that is blind, so the default is to turn on the spot first.
     """
 
     k_alpha: float = 8.0
     k_beta: float = -1.5
     k_rho_min: float = 1.0
     k_rho_max: float = 3.0
-    policy: Literal["throughput", "constant"] = "throughput"
+    policy: Literal["throughput", "constant", "smooth"] = "throughput"
+    threshold: Literal["thesis", "ideal"] = "thesis"
+    reverse: bool = False
 
     def problems(self) -> Iterator[Problem]:
         yield from _positive(self, "k_rho_min")
@@ -150,6 +156,13 @@ class TeamSection:
     lost_after: missing acknowledgements in a row until a follower is given up.
     leader_timeout: silence until a follower gives up its leader [s]. setup_timeout [s].
     next_msdu_bytes: size of Next on the air (thesis 3.7).
+
+    profile: "thesis" (its rules alone) or "team" (epochs, yielding, joining; team.md).
+    orphan: what a robot of profile "thesis" does that hears nobody any more: "stop", or go "solo"
+    (thesis 3.8.1). successor_timeout: silence of an elected leader until it is given up too [s].
+    narrow_spacing: distance between neighbours in the column of a narrow passage [m].
+    straggler_speed: share of leader_speed while a follower is more than a spacing behind; 1 = the
+    leader never waits (thesis 3.8.2).
     """
 
     size: int = 6
@@ -157,9 +170,14 @@ class TeamSection:
     spacing: float = 4.0
     next_period: float = 2.0
     lost_after: int = 2
-    leader_timeout: float = 6.0
+    leader_timeout: float = 5.0
     setup_timeout: float = 40.0
     next_msdu_bytes: int = 800
+    profile: Literal["team", "thesis"] = "team"
+    orphan: Literal["stop", "solo"] = "stop"
+    successor_timeout: float = 1.0
+    narrow_spacing: float = 1.5
+    straggler_speed: float = 1.0
 
     @property
     def robots(self) -> tuple[int, ...]:
@@ -167,8 +185,17 @@ class TeamSection:
 
     def problems(self) -> Iterator[Problem]:
         yield from _positive(
-            self, "size", "spacing", "next_period", "lost_after", "leader_timeout", "setup_timeout"
-        )
+            self, "size", "spacing", "next_period", "lost_after", "leader_timeout", "setup_timeout",
+            "successor_timeout", "narrow_spacing", "straggler_speed",
+        )  # fmt: skip
+        if self.straggler_speed > 1:
+            yield Problem("straggler_speed", f"{self.straggler_speed} is above 1", "a share, 0 < s <= 1")
+        if self.leader_timeout < self.next_period:
+            yield Problem(
+                "leader_timeout",
+                f"{self.leader_timeout} s is less than next_period",
+                f"at least {self.next_period} s",
+            )
         duplicates = sorted({i for i in self.ids if self.ids.count(i) > 1})
         if duplicates:
             yield Problem("ids", f"robot {duplicates[0]} stands twice", "every id once")
@@ -200,25 +227,81 @@ class PlannerSection:
 
 @dataclass(frozen=True, slots=True)
 class RadioSection:
-    """Radio of all robots (radio.md): preset of the propagation, and the MAC's parameters."""
+    """Radio of all robots (thesis 3.7): propagation, the 802.11b link, and the ad hoc routing.
+
+    preset: "thesis" (0.2 W over free space, SNR 60 dB at 1 m) or "physical" (15 dBm, noise figure
+        7 dB, exponent 2.6). The next six are None to be as the preset says.
+    tx_power_dbm; path_loss_exponent n; noise_dbm: floor in 22 MHz; shadowing_db: sigma of the
+        log-normal fading; receive_threshold_db: lowest SINR that is received;
+        carrier_sense_db: lowest SNR of a carrier that makes the medium busy.
+    frequency_hz, antenna_gain_dbi (each end), system_loss_db, reference_distance d0 [m].
+    fading: a new draw for each "frame", or one for each "exchange". wall_loss_db: per wall crossed.
+    rate_mbps: of data frames. rts_threshold_bytes: longer MSDUs are sent with RTS/CTS (2304: never).
+    mac_header_bytes: 34 in the thesis's sums, 28 with three addresses.
+    retry_limit: attempts of one frame. cts_timeout_us: from the end of a frame until its answer is
+        given up (SIFS + slot + preamble; 334 in the standard of 1999).
+    queue_frames: bound of a card's queue; a frame that finds it full is dropped.
+    routing: "direct" (one hop only), "mrsr" (on DSR) or "mrdv" (on AODV).
+    gamma_distance: remaining distance per unit of gamma in p_r = min(1, (1/v)^gamma) [m].
+    """
 
     preset: Literal["thesis", "physical"] = "thesis"
     rate_mbps: float = 1.0
     retry_limit: int = 7
+    tx_power_dbm: float | None = None
+    path_loss_exponent: float | None = None
+    noise_dbm: float | None = None
+    shadowing_db: float | None = None
+    receive_threshold_db: float | None = None
+    carrier_sense_db: float | None = None
+    frequency_hz: float = 2.4e9
+    antenna_gain_dbi: float = 0.0
+    system_loss_db: float = 0.0
+    reference_distance: float = 1.0
+    fading: Literal["frame", "exchange"] = "frame"
+    wall_loss_db: float = 0.0
+    rts_threshold_bytes: int = 0
+    mac_header_bytes: int = 34
+    cts_timeout_us: float = 222.0
+    queue_frames: int = 64
+    routing: Literal["direct", "mrsr", "mrdv"] = "mrdv"
+    gamma_distance: float = 10.0
 
     def problems(self) -> Iterator[Problem]:
         if self.rate_mbps not in (1.0, 2.0, 5.5, 11.0):
             yield Problem("rate_mbps", f"{self.rate_mbps} Mb/s", "1, 2, 5.5 or 11 (802.11b)")
-        yield from _positive(self, "retry_limit")
+        yield from _positive(
+            self,
+            "retry_limit",
+            "frequency_hz",
+            "reference_distance",
+            "mac_header_bytes",
+            "queue_frames",
+            "gamma_distance",
+        )
+        for key in ("wall_loss_db", "rts_threshold_bytes", "shadowing_db"):
+            value = getattr(self, key)
+            if value is not None and value < 0:
+                yield Problem(key, f"{value} is negative", "0 or more")
+        if self.path_loss_exponent is not None and self.path_loss_exponent < 1:
+            yield Problem("path_loss_exponent", f"{self.path_loss_exponent} < 1", "2 is free space")
+        if self.cts_timeout_us < 222.0:
+            yield Problem(
+                "cts_timeout_us",
+                f"{self.cts_timeout_us} us ends before an answer can begin",
+                "222 or more",
+            )
 
 
 @dataclass(frozen=True, slots=True)
 class ClockSection:
-    """period_ms: length of a tick. limit_s: simulated time after which a mission has failed.
+    """mode: lockstep, everyone waits for its inputs of a tick. period_ms: length of a tick.
 
+    limit_s: simulated time after which a mission has failed.
     silence_s: wall-clock time after which a process that says nothing is given up [s].
     """
 
+    mode: Literal["lockstep"] = "lockstep"
     period_ms: int = 50
     limit_s: float = 900.0
     silence_s: float = 10.0

@@ -18,12 +18,11 @@ _LARGEST = 1 << 24
 
 def movingai_map(name: str, content: bytes, cell: float) -> WallMap:
     """The map of a .map file with `cell` metres a cell. Raises MapError."""
-    lines = content.replace(b"\r\n", b"\n").split(b"\n")
+    lines = content.replace(b"\r\n", b"\n").rstrip().split(b"\n")
     width, height, first = _header(name, lines)
-    rows = lines[first : first + height]
-    if len(rows) < height or any(line.strip() for line in lines[first + height :]):
-        found = sum(1 for line in lines[first:] if line.strip())
-        raise MapError(name, f"{found} rows of cells", f"the header says height {height}")
+    rows = lines[first:]
+    if len(rows) != height:
+        raise MapError(name, f"{len(rows)} rows of cells", f"the header says height {height}")
     for number, row in enumerate(rows, start=first + 1):
         if len(row) != width:
             raise MapError(

@@ -1,0 +1,143 @@
+"""The command `onehop`. Exit status: 0 did it, 1 ran and the answer is no, 2 could not run, 130 Ctrl-C.
+
+Each command's module is imported when it is called, so that `onehop --help` answers at once.
+"""
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+from typer import Argument, Option
+from typer._click.exceptions import ClickException, NoArgsIsHelpError
+
+from onehop.contracts.errors import OnehopError
+
+app = typer.Typer(
+    name="onehop",
+    help="Robot teams held together by radio: run, re-execute and explain missions.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+class Driver(StrEnum):
+    PROCESSES = "processes"
+    INLINE = "inline"
+
+
+Settings = Annotated[
+    list[str],
+    Option("--set", metavar="KEY.PATH=VALUE", help="Change a key of the scenario (repeatable)."),
+]
+AsJson = Annotated[
+    bool, Option("--json", help="Print one JSON object on stdout and nothing else there.")
+]
+
+
+def _leave(status: int) -> NoReturn:
+    raise typer.Exit(status)
+
+
+@app.command()
+def run(
+    scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
+    driver: Annotated[Driver, Option(help="One process each, or all in one.")] = Driver.PROCESSES,
+    clock: Annotated[str | None, Option(help="lockstep: everyone waits for its inputs.")] = None,
+    seed: Annotated[int | None, Option(help="Seed of everything random.")] = None,
+    map_file: Annotated[
+        Path | None, Option("--map", help="Another map: .toml, ROS .yaml or MovingAI .map.")
+    ] = None,
+    start: Annotated[str | None, Option(metavar="X,Y", help="Where the team starts [m].")] = None,
+    goal: Annotated[str | None, Option(metavar="X,Y", help="Where the team goes [m].")] = None,
+    settings: Settings = [],  # noqa: B006 - typer needs a list
+    out: Annotated[Path | None, Option(help="Folder for log, summary and figure.")] = None,
+    record: Annotated[bool, Option("--record/--no-record", help="Write the log.")] = True,
+    as_json: AsJson = False,
+) -> None:
+    """Run a mission: every robot a process on the bus, recorded.
+
+    Example: onehop run scenarios/map1.toml --seed 7 --set team.size=4
+    """
+    from onehop.commands import run as command
+
+    if clock is not None:
+        settings = [*settings, f"clock.mode={clock}"]
+    _leave(
+        command.run(scenario, driver.value, settings, seed, map_file, start, goal, out, record, as_json)
+    )
+
+
+@app.command()
+def replay(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    robot: Annotated[int | None, Option(help="Only this robot.")] = None,
+    first_s: Annotated[float | None, Option("--from", help="Compare from this time on [s].")] = None,
+    last_s: Annotated[float | None, Option("--to", help="Stop at this time [s].")] = None,
+    settings: Settings = [],  # noqa: B006
+    as_json: AsJson = False,
+) -> None:
+    """Re-execute a log and compare every output with the recorded one.
+
+    With --robot and --set: where that robot would first have acted otherwise.
+
+    Example: onehop replay runs/demo/mission.mcap --robot 3
+    """
+    from onehop.commands import replay as command
+
+    _leave(command.replay(log, robot, first_s, last_s, settings, as_json))
+
+
+@app.command()
+def elect(
+    ids: Annotated[str, Argument(help="Robot ids, e.g. 1,2,4,5.")],
+    narrow: Annotated[bool, Option("--narrow", help="In a narrow passage.")] = False,
+    spacing: Annotated[float, Option(help="Distance between neighbours [m].")] = 4.0,
+    as_json: AsJson = False,
+) -> None:
+    """Leader, shape and slots of a team.
+
+    Example: onehop elect 1,2,4,5
+    """
+    from onehop.commands import elect as command
+
+    _leave(command.elect(ids, narrow, spacing, as_json))
+
+
+@app.command()
+def doctor(as_json: AsJson = False) -> None:
+    """Is everything here that a run needs? What is missing, and how to get it.
+
+    Example: onehop doctor
+    """
+    from onehop.commands import doctor as command
+
+    _leave(command.doctor(as_json))
+
+
+def main() -> NoReturn:
+    """Entry point: no traceback for what a person typed, one line instead."""
+    command = typer.main.get_command(app)
+    try:
+        status = command.main(standalone_mode=False)
+    except OnehopError as error:
+        print(f"onehop: {error}", file=sys.stderr)
+        status = 2
+    except typer.Abort:
+        status = 130
+    except KeyboardInterrupt:
+        print("onehop: interrupted", file=sys.stderr)
+        status = 130
+    except BrokenPipeError:
+        status = 1
+    except NoArgsIsHelpError as error:
+        print(error.format_message())
+        status = 2
+    except ClickException as error:
+        print(f"onehop: {error.format_message()}; see onehop --help", file=sys.stderr)
+        status = 2
+    sys.exit(status)

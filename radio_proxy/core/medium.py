@@ -1,0 +1,135 @@
+"""The air: which emissions overlap, who senses them, and whether a receiver gets one through.
+
+A frame is received when its SINR (thesis eq. 3.23: floor, jams and every overlapping emission) reaches
+the receive threshold and its bits survive the modulation's error rate. Stations are indices.
+
+Differs: an overlap counts over the whole frame and interferers at their mean power, because a frame
+that was touched at all needs the threshold at its worst moment. Overheard reservations (NAV) are judged
+at mean power too, because beyond carrier sense only they matter, and a draw for every bystander of
+every frame would cost more than the rest of the model.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+from onehop.contracts.messages import Fate
+from radio_proxy.core.draws import Draws
+from radio_proxy.core.error_rates import CERTAIN_SINR_DB, frame_success
+from radio_proxy.core.propagation import SILENT_DB, Field
+
+
+@dataclass(slots=True, eq=False)
+class Emission:
+    """One frame on the air, from begin() to end(). row: mean SNR at every station [dB].
+
+    fade_db: draw of the whole exchange, or None for a draw of its own at every frame.
+    """
+
+    source: int
+    row: list[float]
+    fade_db: float | None
+    overlaps: list[list[float]] = field(default_factory=list)
+
+
+@dataclass(slots=True, eq=False)
+class Reservation:
+    """A duration field that bystanders heard: they hold back until `until` [ns]."""
+
+    until: int
+    emission: Emission
+    source: int
+    receiver: int
+
+
+class Medium:
+    """Emissions in flight and the reservations that they announced."""
+
+    def __init__(self, place: Field, draws: Draws) -> None:
+        self.field = place
+        self.on_air: list[Emission] = []
+        self._reservations: list[Reservation] = []
+        self._draws = draws
+        self._sense_db = place.budget.carrier_sense_db
+        self._threshold_db = place.budget.receive_threshold_db
+        self._sigma_db = place.budget.shadowing_db
+
+    def fade_db(self) -> float:
+        """One draw of the log-normal fading [dB]."""
+        return self._sigma_db * self._draws.normal() if self._sigma_db else 0.0
+
+    def begin(self, source: int, fade_db: float | None) -> Emission:
+        """Put a frame on the air; it and everything in flight now disturb each other."""
+        emission = Emission(source, self.field.row(source), fade_db)
+        for other in self.on_air:
+            other.overlaps.append(emission.row)
+            emission.overlaps.append(other.row)
+        self.on_air.append(emission)
+        return emission
+
+    def end(self, emission: Emission) -> None:
+        """Take a frame off the air."""
+        self.on_air.remove(emission)
+
+    def senses(self, station: int, emission: Emission) -> bool:
+        """Whether a station's carrier sense reports this emission (its own always)."""
+        return emission.row[station] >= self._sense_db
+
+    def is_busy(self, station: int) -> bool:
+        """Physical carrier sense (802.11-1999, 15.4.8.4, mode 2: jams carry no DSSS signal)."""
+        return any(emission.row[station] >= self._sense_db for emission in self.on_air)
+
+    def reserve(
+        self, emission: Emission, source: int, receiver: int, until: int, now: int
+    ) -> Reservation:
+        """Bystanders that hear this emission hold back until `until` (NAV, 802.11-1999, 9.2.5.4)."""
+        self._reservations = [r for r in self._reservations if r.until > now]
+        reservation = Reservation(until, emission, source, receiver)
+        self._reservations.append(reservation)
+        return reservation
+
+    def release(self, reservation: Reservation) -> None:
+        """Forget a reservation whose RTS stayed without an answer (802.11-1999, 9.2.5.4)."""
+        if reservation in self._reservations:
+            self._reservations.remove(reservation)
+
+    def reserved_until(self, station: int, now: int) -> int:
+        """End of the reservations that a station heard, `now` when there is none [ns]."""
+        until = now
+        for reservation in self._reservations:
+            if (
+                reservation.until > until
+                and station not in (reservation.source, reservation.receiver)
+                and self._mean_sinr_db(reservation.emission, station) >= self._threshold_db
+            ):
+                until = reservation.until
+        return until
+
+    def receive(
+        self, emission: Emission, station: int, rate_mbps: float, bits: int
+    ) -> tuple[Fate | None, float]:
+        """What keeps a station from getting a frame (None: nothing), and its SINR [dB].
+
+        RETRY_LIMIT stands for a collision: without the others the frame would have been received.
+        """
+        fade = self.fade_db() if emission.fade_db is None else emission.fade_db
+        sinr_db = self._mean_sinr_db(emission, station) + fade
+        if emission.row[station] <= SILENT_DB:
+            return Fate.BELOW_THRESHOLD, SILENT_DB
+        if sinr_db < self._threshold_db:
+            alone = emission.row[station] + fade - self.field.noise_rise_db[station]
+            collided = emission.overlaps and alone >= self._threshold_db
+            return (Fate.RETRY_LIMIT if collided else Fate.BELOW_THRESHOLD), sinr_db
+        if sinr_db >= CERTAIN_SINR_DB:
+            return None, sinr_db
+        if self._draws.uniform() >= frame_success(rate_mbps, sinr_db, bits):
+            return Fate.BIT_ERRORS, sinr_db
+        return None, sinr_db
+
+    def _mean_sinr_db(self, emission: Emission, station: int) -> float:
+        rise_db = self.field.noise_rise_db[station]
+        if emission.overlaps:
+            noise = 10.0 ** (rise_db / 10.0)
+            for row in emission.overlaps:
+                noise += 10.0 ** (row[station] / 10.0)
+            rise_db = 10.0 * math.log10(noise)
+        return emission.row[station] - rise_db

@@ -1,0 +1,306 @@
+"""The radio of a mission: `Radio.carry(truth)` moves every message through one tick (architecture.md).
+
+Here messages meet robots: who is present, what they offer, what reaches them, and what is on record
+about it. The link lies in dcf.py and medium.py, the routing in routing/.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from onehop.contracts.messages import (
+    BROADCAST,
+    Carriage,
+    Ether,
+    Fate,
+    Inbox,
+    Offer,
+    Presence,
+    Reception,
+    Transmission,
+    Truth,
+    Verdict,
+)
+from onehop.contracts.randomness import generator
+from onehop.contracts.scenario import RadioBriefing, RadioSection
+from radio_proxy.core.airtime import dsss
+from radio_proxy.core.dcf import EVERYONE, Dcf, Frame
+from radio_proxy.core.draws import Draws
+from radio_proxy.core.error_rates import bit_error_rate
+from radio_proxy.core.medium import Emission, Medium
+from radio_proxy.core.message import Data, Message
+from radio_proxy.core.propagation import Field, link_budget
+from radio_proxy.core.routing.direct import DirectRouter
+from radio_proxy.core.routing.interface import Router
+from radio_proxy.core.routing.mrdv import MrdvRouter
+from radio_proxy.core.routing.mrsr import MrsrRouter
+
+
+class Card:
+    """The network card of one incarnation of one robot, as its routing protocol sees it."""
+
+    def __init__(self, radio: "Radio", presence: Presence, section: RadioSection, now: int) -> None:
+        self.robot = presence.robot
+        self.incarnation = presence.incarnation
+        self.gone = False
+        self._radio = radio
+        self.router = self._make_router(section, now)
+
+    def _make_router(self, section: RadioSection, now: int) -> Router:
+        if section.routing == "mrsr":
+            return MrsrRouter(self, section.gamma_distance)
+        if section.routing == "mrdv":
+            return MrdvRouter(self, section.gamma_distance, now)
+        return DirectRouter(self)
+
+    def send(self, packet: object, next_hop: int, size_bytes: int, kind: str, now: int) -> bool:
+        return self._radio.send(self.robot, packet, next_hop, size_bytes, kind, now)
+
+    def deliver(self, data: Data, now: int) -> None:
+        self._radio.deliver(data, now)
+
+    def drop(self, data: Data, fate: Fate) -> None:
+        self._radio.drop(data, fate)
+
+    def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
+        def unless_gone(given: Any, now: int) -> None:
+            if not self.gone:
+                event(given, now)
+
+        self._radio.at(time_ns, unless_gone, argument)
+
+    def uniform(self) -> float:
+        return self._radio.uniform()
+
+    def speed(self) -> float:
+        return self._radio.offer_of(self.robot).speed
+
+    def remaining_distance(self) -> float:
+        return self._radio.offer_of(self.robot).remaining_distance
+
+
+class Radio:
+    """Everything between the outboxes of one tick and the inboxes of the next."""
+
+    def __init__(self, briefing: RadioBriefing) -> None:
+        section = briefing.radio
+        self._period = briefing.period_ns
+        self._section = section
+        self._robots = tuple(sorted(briefing.robots))
+        self._index = {robot: i for i, robot in enumerate(self._robots)}
+        self._draws = Draws(generator(briefing.seed, "radio"))
+        self._field = Field(link_budget(section), self._robots, briefing.walls)
+        self._timing = dsss(section)
+        self._dcf = Dcf(
+            len(self._robots),
+            self._timing,
+            Medium(self._field, self._draws),
+            self._draws,
+            self,
+            retry_limit=section.retry_limit,
+            queue_frames=section.queue_frames,
+            rts_threshold_bytes=section.rts_threshold_bytes,
+            fade_per_exchange=section.fading == "exchange",
+        )
+        self._cards: dict[int, Card] = {}
+        self._incarnations: tuple[tuple[int, int], ...] = ()
+        self._offers: tuple[Offer, ...] = ()
+        self._crowded = False
+        self._numbers = dict.fromkeys(self._robots, 0)
+        self._verdicts: list[Verdict] = []
+        self._inboxes: dict[int, list[Reception]] = {}
+        self._arrivals: list[tuple[int, int, int, int, Reception]] = []
+        self._control_bytes: dict[str, int] = {}
+
+    def carry(self, truth: Truth) -> Carriage:
+        """What reaches whom in the tick that ends at truth.time_ns, and what became of the rest."""
+        start = truth.time_ns - self._period
+        self._welcome(truth, start)
+        self._field.update(truth.present, truth.cuts, truth.jams)
+        self._offers = truth.offers
+        self._crowded = sum(bool(offer.outbox) for offer in truth.offers) > 1
+        for offer in truth.offers:
+            for transmission in offer.outbox:
+                self._submit(offer.robot, transmission, start)
+        self._crowded = False
+        self._dcf.run(truth.time_ns)
+        return self._hand_out(truth)
+
+    def _hand_out(self, truth: Truth) -> Carriage:
+        tick, time_ns = truth.tick, truth.time_ns
+        got: dict[int, list[Reception]] = {}
+        if self._arrivals:
+            self._arrivals.sort(key=lambda arrival: arrival[:4])
+            for _, _, _, robot, reception in self._arrivals:
+                got.setdefault(robot, []).append(reception)
+            self._arrivals = []
+        inboxes = {
+            presence.robot: Inbox(tick, time_ns, tuple(got.get(presence.robot, ())))
+            for presence in truth.present
+        }
+        verdicts = tuple(self._verdicts)
+        self._verdicts = []
+        return Carriage(inboxes, Ether(tick, time_ns, verdicts, self._control_bytes))
+
+    def _welcome(self, truth: Truth, now: int) -> None:
+        """Cards of robots that left (or came back as another process) die; new ones start empty."""
+        incarnations = tuple([(p.robot, p.incarnation) for p in truth.present])
+        if incarnations == self._incarnations:
+            return
+        before, after = dict(self._incarnations), dict(incarnations)
+        self._incarnations = incarnations
+        left = [robot for robot in sorted(before) if after.get(robot) != before[robot]]
+        died = [self._cards.pop(robot) for robot in left]
+        for card in died:
+            card.gone = True
+            for data in card.router.abandon():
+                self.drop(data, Fate.SENDER_GONE)
+        for robot in left:
+            for frame in self._dcf.remove(self._index[robot]):
+                if isinstance(frame.packet, Data):
+                    self.drop(frame.packet.tried(frame.attempts), Fate.SENDER_GONE)
+        for presence in truth.present:
+            if before.get(presence.robot) != presence.incarnation:
+                self._cards[presence.robot] = Card(self, presence, self._section, now)
+
+    def _submit(self, robot: int, transmission: Transmission, now: int) -> None:
+        self._numbers[robot] += 1
+        destination = transmission.destination
+        size = max(transmission.msdu_bytes, len(transmission.payload))
+        message = Message(self._numbers[robot], robot, destination, transmission.payload, size, now)
+        data = Data(message, (robot,))
+        if destination == BROADCAST:
+            if not self.send(robot, data, BROADCAST, size, "", now):
+                self.drop(data, Fate.QUEUE_FULL)
+        elif destination == robot:
+            self.drop(data, Fate.NO_ROUTE)
+        elif destination not in self._index:
+            self.drop(data, Fate.RECEIVER_GONE)
+        else:
+            self._cards[robot].router.submit(data, now)
+
+    # What cards ask for.
+
+    def send(
+        self, robot: int, packet: object, next_hop: int, size_bytes: int, kind: str, now: int
+    ) -> bool:
+        """Queue a packet for one hop; control packets count when they are queued."""
+        receiver = EVERYONE if next_hop == BROADCAST else self._index[next_hop]
+        frame = Frame(receiver, size_bytes, packet)
+        if not self._dcf.enqueue(self._index[robot], frame, now, self._crowded):
+            return False
+        if kind:
+            counted = dict(self._control_bytes)
+            counted[kind] = counted.get(kind, 0) + size_bytes
+            self._control_bytes = dict(sorted(counted.items()))
+        return True
+
+    def deliver(self, data: Data, now: int) -> None:
+        """A message reached its destination."""
+        message = data.message
+        message.copies -= 1
+        if message.settled:
+            return
+        message.settled = True
+        self._settle(data, message.destination, Fate.DELIVERED, now)
+
+    def drop(self, data: Data, fate: Fate) -> None:
+        """One copy of a message is gone; when it was the last one, the message is lost."""
+        message = data.message
+        message.copies -= 1
+        if message.settled or message.copies > 0:
+            return
+        message.settled = True
+        if message.destination == BROADCAST:
+            for robot in sorted(self._cards):
+                if robot != message.source:
+                    self._settle(data, robot, fate, -1)
+            return
+        if fate is not Fate.SENDER_GONE and message.destination not in self._cards:
+            fate = Fate.RECEIVER_GONE
+        self._settle(data, message.destination, fate, -1)
+
+    def _settle(self, data: Data, receiver: int, fate: Fate, arrival: int) -> None:
+        message = data.message
+        verdict = message.verdict(data, receiver, fate, arrival)
+        self._verdicts.append(verdict)
+        if fate is Fate.DELIVERED:
+            reception = Reception(
+                source=message.source,
+                payload=message.payload,
+                service_start_ns=verdict.service_start_ns,
+                arrival_ns=arrival,
+                hops=len(data.path) - 1,
+                attempts=sum(data.attempts),
+                snr_db=message.sinr_db,
+                bit_error_rate=message.bit_error_rate,
+                msdu_bytes=message.msdu_bytes,
+            )
+            self._arrivals.append((arrival, message.source, message.number, receiver, reception))
+
+    def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
+        """A timer of a routing protocol."""
+        self._dcf.at(time_ns, event, argument)
+
+    def uniform(self) -> float:
+        """A draw of the radio's stream."""
+        return self._draws.uniform()
+
+    def offer_of(self, robot: int) -> Offer:
+        """The robot's last word about its speed and distance; at rest when it has said nothing yet."""
+        for offer in self._offers:
+            if offer.robot == robot:
+                return offer
+        return Offer(robot, 0.0, 0.0, ())
+
+    # What the link layer reports.
+
+    def on_service(self, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
+        packet = frame.packet
+        if isinstance(packet, Data) and packet.message.first_service < 0:
+            packet.message.first_service = now
+            packet.message.discovery_before_service = packet.message.discovery
+
+    def on_received(self, receiver: int, sender: int, frame: Frame, now: int) -> None:
+        packet = frame.packet
+        holder = self._robots[receiver]
+        if isinstance(packet, Data):
+            packet.message.copies += 1
+            self._note_link(packet, frame)
+            packet = packet.moved(holder, frame.attempts)
+        self._cards[holder].router.on_packet(packet, self._robots[sender], now)
+
+    def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:
+        robot = self._robots[sender]
+        if isinstance(frame.packet, Data):
+            frame.packet.message.copies -= 1
+        self._cards[robot].router.on_acknowledged(frame.packet, self._robots[frame.receiver], now)
+
+    def on_undeliverable(self, sender: int, frame: Frame, now: int) -> None:
+        robot = self._robots[sender]
+        packet = frame.packet
+        if isinstance(packet, Data):
+            self._note_link(packet, frame)
+            packet = packet.tried(frame.attempts)
+        cause = frame.cause or Fate.RETRY_LIMIT
+        self._cards[robot].router.on_undeliverable(packet, self._robots[frame.receiver], cause, now)
+
+    def on_broadcast_done(self, sender: int, frame: Frame, emission: Emission, now: int) -> None:
+        packet = frame.packet
+        bits = 8 * (self._timing.mac_header_bytes + frame.msdu_bytes)
+        rate_mbps = self._timing.basic_rate_mbps
+        source = self._robots[sender]
+        for robot in sorted(self._cards):
+            if robot == source:
+                continue
+            cause, sinr_db = self._dcf.medium.receive(emission, self._index[robot], rate_mbps, bits)
+            if isinstance(packet, Data):
+                packet.message.sinr_db = sinr_db
+                packet.message.bit_error_rate = bit_error_rate(rate_mbps, sinr_db)
+                copy = packet.tried(1) if cause else packet.moved(robot, 1)
+                self._settle(copy, robot, cause or Fate.DELIVERED, -1 if cause else now)
+            elif cause is None:
+                self._cards[robot].router.on_packet(packet, source, now)
+
+    def _note_link(self, data: Data, frame: Frame) -> None:
+        data.message.sinr_db = frame.sinr_db
+        data.message.bit_error_rate = bit_error_rate(self._timing.rate_mbps, frame.sinr_db)

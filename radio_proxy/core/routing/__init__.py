@@ -1,0 +1,1 @@
+"""How a message finds its way over several hops: one interface, three ways."""

@@ -1,0 +1,31 @@
+"""No routing: every message goes to its destination in one hop or not at all."""
+
+from onehop.contracts.messages import Fate
+from radio_proxy.core.message import Data
+from radio_proxy.core.routing.interface import Host
+
+
+class DirectRouter:
+    """One hop, no tables, no control packets."""
+
+    def __init__(self, host: Host) -> None:
+        self._host = host
+
+    def submit(self, data: Data, now: int) -> None:
+        message = data.message
+        if not self._host.send(data, message.destination, message.msdu_bytes, "", now):
+            self._host.drop(data, Fate.QUEUE_FULL)
+
+    def abandon(self) -> list[Data]:
+        return []
+
+    def on_packet(self, packet: object, sender: int, now: int) -> None:  # noqa: ARG002
+        assert isinstance(packet, Data)
+        self._host.deliver(packet, now)
+
+    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
+        """Nothing is kept that could be refreshed."""
+
+    def on_undeliverable(self, packet: object, next_hop: int, cause: Fate, now: int) -> None:  # noqa: ARG002
+        assert isinstance(packet, Data)
+        self._host.drop(packet, cause)

@@ -1,0 +1,80 @@
+"""What a robot may rely on when it hands messages to the radio."""
+
+import pytest
+
+from onehop.contracts.messages import BROADCAST, Fate
+from onehop.contracts.scenario import RadioSection
+from tests.radio.missions import PERIOD, Mission, line, message
+
+STILL = RadioSection(routing="direct", shadowing_db=0.0, mac_header_bytes=28)
+"""One hop, no fading, and the header of the measured references."""
+
+
+def test_idle_exchange_takes_what_ns3_measured() -> None:
+    """ns-3 3.44, one hop without backoff, 28 B header: 7.542 ms (radio.md)."""
+    (verdict,) = Mission(line(2, 5.0), STILL).run(1, {1: (message(2),)})
+    assert verdict.fate is Fate.DELIVERED
+    assert verdict.arrival_ns - verdict.service_start_ns == pytest.approx(7_542_000, abs=100)
+
+
+def test_waiting_behind_other_messages_is_not_service() -> None:
+    """Five Nexts queued together each measure their own service, not the queue (radio.md)."""
+    team = line(6, 2.0)
+    outbox = tuple(message(i) for i in (2, 3, 4, 5, 6))
+    verdicts = Mission(team, STILL).run(2, {1: outbox})
+    assert [v.receiver for v in verdicts] == [2, 3, 4, 5, 6]
+    assert all(v.arrival_ns - v.service_start_ns <= 7_542_100 + 31 * 20_000 for v in verdicts)
+    assert verdicts[-1].queueing_ns > 4 * 7_542_000
+
+
+def test_a_message_that_outlasts_the_tick_arrives_in_the_next_one() -> None:
+    mission = Mission(line(2, 5.0), STILL)
+    assert len(mission.step({1: tuple(message(2) for _ in range(8))})) == 6
+    first = mission.inboxes[2].receptions
+    assert all(r.arrival_ns <= PERIOD for r in first)
+    assert len(mission.step()) == 2
+    assert all(PERIOD < r.arrival_ns <= 2 * PERIOD for r in mission.inboxes[2].receptions)
+
+
+def test_a_broadcast_has_one_verdict_for_each_robot_present() -> None:
+    verdicts = Mission({1: (0, 0), 2: (5, 0), 3: (90, 0)}, STILL).run(1, {1: (message(BROADCAST, 40),)})
+    assert [(v.receiver, v.fate) for v in verdicts] == [(2, Fate.DELIVERED), (3, Fate.BELOW_THRESHOLD)]
+
+
+def test_a_message_to_oneself_or_to_a_stranger_ends_at_once() -> None:
+    verdicts = Mission(line(2, 5.0), STILL).run(1, {1: (message(1), message(77))})
+    assert [v.fate for v in verdicts] == [Fate.NO_ROUTE, Fate.RECEIVER_GONE]
+
+
+def test_out_of_range_ends_below_the_threshold_after_all_retries() -> None:
+    (verdict,) = Mission(line(2, 40.0), STILL).run(4, {1: (message(2),)})
+    assert (verdict.fate, verdict.attempts) == (Fate.BELOW_THRESHOLD, (7,))
+
+
+def test_queue_of_a_robot_that_left_ends_in_sender_gone() -> None:
+    mission = Mission(line(3, 5.0), STILL)
+    mission.step({1: tuple(message(2) for _ in range(9))})
+    del mission.places[1]
+    assert {v.fate for v in mission.step()} == {Fate.SENDER_GONE}
+
+
+def test_frames_to_a_robot_that_left_end_in_receiver_gone() -> None:
+    mission = Mission(line(3, 5.0), STILL)
+    del mission.places[2]
+    (verdict,) = mission.run(3, {1: (message(2),)})
+    assert verdict.fate is Fate.RECEIVER_GONE
+
+
+def test_a_restarted_robot_starts_with_an_empty_card() -> None:
+    mission = Mission(line(2, 5.0), STILL)
+    mission.step({1: tuple(message(2) for _ in range(9))})
+    mission.incarnations[1] = 1
+    settled = mission.run(4)
+    assert [v.fate for v in settled] == [Fate.SENDER_GONE] * 3
+
+
+def test_a_full_queue_drops_the_newest() -> None:
+    mission = Mission(line(2, 5.0), RadioSection(routing="direct", queue_frames=4))
+    verdicts = mission.step({1: tuple(message(2) for _ in range(6))})
+    full = [v.message for v in verdicts if v.fate is Fate.QUEUE_FULL]
+    assert full == [5, 6]
