@@ -71,7 +71,7 @@ class Openings:
 
         record: least distance to the goal that the robot ever had [m].
         """
-        rim, outward = unseen_rim(view, 2.0 * self.inflation)
+        rim, outward = unseen_rim(view, 2.0 * self.inflation, self.goal, record)
         self._refute(view, rim, known)
         near_rim = squared_distances(roadmap.points, rim)
         candidates = np.flatnonzero(
@@ -145,16 +145,25 @@ class Openings:
         return min(places, key=lambda n: (math.dist(self.memory.xy[n], self.goal), n))
 
 
-def unseen_rim(view: View, gap: float) -> tuple[FloatArray, FloatArray]:
+def unseen_rim(
+    view: View, gap: float, goal: FloatArray, record: float
+) -> tuple[FloatArray, FloatArray]:
     """Points where what is seen borders on the unseen, (n, 2) [m], and the direction to the unseen side.
 
-    They lie at the end of open beams, and along the edge of the shadow between neighbouring beams whose
-    ranges differ by more than `gap`: nothing narrower lets the robot through.
+    They lie along the edge of the shadow between neighbouring beams whose ranges differ by more than
+    `gap`, since nothing narrower lets the robot through, and at the end of open beams. Of these only
+    the ones beside an obstacle count, where its outline leaves the laser's range, and the ones closer to
+    the goal than `record`: a shortest way bends nowhere else, so these are the nodes of TangentBug's
+    local tangent graph (Kamon, Rimon and Rivlin 1998).
     """
     sight = view.sight
     heading = view.fan.angles + view.pose.heading
-    far = np.flatnonzero(view.open_beams)[::4]
-    points = [view.origin + view.directions[far] * sight[far, None]]
+    ends = view.origin + view.directions * sight[:, None]
+    beside = np.convolve(~view.open_beams, np.ones(7), mode="same") > 0
+    closer = np.hypot(*(ends - goal).T) < record
+    closer[1::4] = closer[2::4] = closer[3::4] = False
+    far = np.flatnonzero(view.open_beams & (beside | closer))
+    points = [ends[far]]
     outward = [heading[far]]
     for beam in np.flatnonzero(np.abs(np.diff(sight)) > gap).tolist():
         left_is_far = sight[beam + 1] > sight[beam]
