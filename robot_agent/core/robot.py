@@ -166,8 +166,11 @@ class Robot:
         self._in_position = self._error <= IN_POSITION
         if self._at_rest(protocol):
             return STANDSTILL
+        moves = protocol.phase is Phase.DRIVING
         standoff = math.hypot(target.x - leader.x, target.y - leader.y)
-        twist = self._follower.step(pose, scan, nearest, target, link.trail, standoff, self._k_rho)
+        twist = self._follower.step(
+            pose, scan, nearest, target, link.trail, standoff, moves, self._k_rho
+        )
         self._tell_border(protocol)
         return twist
 
