@@ -33,6 +33,9 @@ FACING = 1.2
 BLOCKED_TICKS, CLEAR_TICKS = 10, 6
 """Ticks in a row after which an obstacle counts as in the way, and as passed: no flutter of modes."""
 
+REACHED = 0.7
+"""A point of the trail is passed within this distance [m]."""
+
 REACTION = 0.4
 """A robot drives at most as fast as lets it stop within this time before what it sees [s]."""
 
@@ -75,11 +78,13 @@ class Follower:
         target: Pose,
         trail: Sequence[tuple[float, float]],
         standoff: float,
+        leader_moves: bool,
         k_rho: float,
     ) -> Twist:
         """Twist for this tick. nearest: least range; trail: leader's way, oldest first [m].
 
-        standoff: distance to keep from the leader while the slot cannot be reached [m].
+        standoff: distance to keep from the leader while the slot cannot be reached [m],
+        while leader_moves; a leader that stands is not waited for.
         """
         error = polar_error(pose, target)
         rho = error.rho
@@ -109,7 +114,7 @@ class Follower:
             self._clear_for = 0
             self._blocked += 1
             self.border = self.border or self._blocked >= BLOCKED_TICKS
-        return self._detour(pose, rho, bearing, trail, standoff, k_rho)
+        return self._detour(pose, rho, bearing, trail, standoff, leader_moves, k_rho)
 
     def _clear(self) -> None:
         self._blocked = 0
@@ -136,22 +141,25 @@ class Follower:
         bearing: float,
         trail: Sequence[tuple[float, float]],
         standoff: float,
+        leader_moves: bool,
         k_rho: float,
     ) -> Twist:
         """Something is in the way: around it, or along its border."""
-        distance = rho
-        if self.border:
-            aim = self._trail_aim(pose, trail)
-            if aim is not None:
-                x, y = to_local(pose, *aim)
+        distance = pace = rho
+        side = 0
+        aim = self._trail_aim(pose, trail) if self.border else None
+        if aim is not None:
+            x, y = to_local(pose, *aim)
+            last = aim == trail[-1]
+            if last and math.hypot(x, y) <= standoff:
+                if leader_moves:
+                    return turn_towards(bearing, self._gains, self._body)
+                side = self._side
+            else:
                 distance, bearing = math.hypot(x, y), math.atan2(y, x)
-                if trail and aim == trail[-1]:
-                    distance -= standoff
-                    if distance <= 0.0:
-                        return turn_towards(bearing, self._gains, self._body)
-            side = self._side if aim is None else 0
-        else:
-            side = 0
+                pace = distance - standoff if last else rho
+        elif self.border:
+            side = self._side
         if self._escape:
             return self._escaped()
         if abs(bearing) > FACING:
@@ -163,7 +171,7 @@ class Follower:
         direction, free = choice
         if self.border and self._side == 0:
             self._side = 1 if direction >= bearing else -1
-        speed = min(k_rho * distance, self._body.max_speed, max(0.0, free) / REACTION)
+        speed = min(k_rho * pace, self._body.max_speed, max(0.0, free) / REACTION)
         if speed * math.cos(direction) ** 2 < 0.05:
             self._stuck()
         else:
@@ -192,7 +200,11 @@ class Follower:
                     self._aim = point
                     break
         if self._aim is None and trail:
-            self._aim = min(trail, key=lambda p: (p[0] - pose.x) ** 2 + (p[1] - pose.y) ** 2)
+            away = [math.hypot(x - pose.x, y - pose.y) for x, y in trail]
+            nearest = away.index(min(away))
+            if away[nearest] < REACHED and nearest < len(trail) - 1:
+                nearest += 1
+            self._aim = trail[nearest]
         return self._aim
 
     def _stuck(self) -> None:

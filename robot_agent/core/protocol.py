@@ -11,7 +11,7 @@ the same whoever forms it, and its leader is its median. Whoever finds that a ne
 leader tells everyone so in a Lost_Follower command (a hand-over), repeated until that leader is heard.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
@@ -19,6 +19,7 @@ from onehop.contracts.messages import BROADCAST, Note, NoteValue, Reception, Tra
 from onehop.contracts.scenario import Briefing
 from onehop.contracts.team import Mode
 from robot_agent.core.leading import Acquaintances, Leadership
+from robot_agent.core.link import Link
 from robot_agent.core.messages import Ack, Beacon, Command, Join, Order, Phase, decode, encode
 from robot_agent.core.modes import RESTART, START, Event, next_mode
 from robot_agent.core.roster import Roster
@@ -32,21 +33,6 @@ HANDOVER_PATIENCE = 2
 
 NANOSECONDS = 1_000_000_000
 FOREVER_NS = 2**62
-
-
-class Link:
-    """What a follower knows of its leader: the last command, and the throughput of the link."""
-
-    __slots__ = ("heard_ns", "narrow", "next_ns", "phase", "pose", "throughput_bps", "trail")
-
-    def __init__(self, now_ns: int) -> None:
-        self.heard_ns = now_ns
-        self.next_ns = now_ns
-        self.phase = Phase.SETUP
-        self.narrow = False
-        self.pose: Pose | None = None
-        self.trail: tuple[tuple[float, float], ...] = ()
-        self.throughput_bps = 0.0
 
 
 class Protocol:
@@ -316,7 +302,7 @@ class Protocol:
 
     # speaking
 
-    def speak(self, now_ns: int, pose: Pose, trail: tuple[tuple[float, float], ...]) -> None:
+    def speak(self, now_ns: int, pose: Pose, trail: Sequence[tuple[float, float]]) -> None:
         """Everything that is due at this tick: commands, hand-overs, giving up, asking."""
         if self.leadership is not None:
             if now_ns >= self.leadership.due_ns:
@@ -333,7 +319,7 @@ class Protocol:
                 if robot != self.robot:
                     self._send(robot, command, self.team.next_msdu_bytes)
 
-    def _lead_period(self, now_ns: int, pose: Pose, trail: tuple[tuple[float, float], ...]) -> None:
+    def _lead_period(self, now_ns: int, pose: Pose, trail: Sequence[tuple[float, float]]) -> None:
         leadership = self.leadership
         assert leadership is not None
         lost = leadership.close_period(self.team.lost_after)
@@ -347,7 +333,7 @@ class Protocol:
             return
         leadership.open_period(now_ns, self._period_ns)
         order = Order.LOST_FOLLOWER if lost else Order.NARROW if self.narrow else Order.NEXT
-        command = self._command(order, pose, lost, trail if self.open else ())
+        command = self._command(order, pose, lost, tuple(trail) if self.open else ())
         payload = encode(command)
         for robot in leadership.followers:
             self._outbox.append(

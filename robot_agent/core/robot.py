@@ -4,41 +4,31 @@ Order of a tick: hear (protocol), drive (planner when leading, tracking when fol
 """
 
 import math
-from collections.abc import Callable
 
-import numpy as np
-
-from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map, wrap_angle
+from onehop.contracts.airtime import ideal_throughput_bps
+from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map
 from onehop.contracts.messages import Action, Note, Percept, Ranges
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Briefing
 from onehop.contracts.team import Mode, Status
 from robot_agent.core.follower import IN_POSITION, Follower
-from robot_agent.core.formation import Formation, formation, width
+from robot_agent.core.formation import Formation, formation
 from robot_agent.core.gains import make_policy
-from robot_agent.core.mates import Lookout
+from robot_agent.core.leader import Leader, PathfinderMaker
 from robot_agent.core.messages import Phase
 from robot_agent.core.modes import Event
-from robot_agent.core.planning import Pathfinder, Progress, make_pathfinder
+from robot_agent.core.planning import make_pathfinder
 from robot_agent.core.protocol import NANOSECONDS, Protocol
 from robot_agent.core.safety import SafetyFilter
 from robot_agent.core.scan import Fan
-from robot_agent.core.tracking import sampled, turn_towards
+from robot_agent.core.tracking import sampled
 from robot_agent.core.trail import behind
-
-PathfinderMaker = Callable[[Briefing, Pose, np.random.Generator], Pathfinder]
 
 THESIS_THRESHOLD_BPS = 0.5333e6
 """Minimum acceptable throughput [bit/s] (thesis 3.8.3)."""
 
-ALIGNED = 0.05
-"""The leader faces the goal within this angle before it gathers the team [rad] (thesis 3.4.1)."""
-
-MATE_TOLERANCE = 1.0
-"""A round thing this near to where a follower can be by its last report is that follower [m]."""
-
-TRAIL_STEP, TRAIL_POINTS = 1.0, 24
-"""Spacing [m] and number of the points of its way that a leader tells."""
+THRESHOLD_SHARE = THESIS_THRESHOLD_BPS / 0.7792e6
+"""The same as a share of the ideal throughput at 1 Mb/s and 800 B (eq. 3.15, full exchange)."""
 
 SETTLING_TICKS = 100
 """Ticks without coming nearer to its last slot after which a follower stops where it is."""
@@ -46,31 +36,35 @@ SETTLING_TICKS = 100
 FOLLOWER_MODES = (Mode.FOLLOWING, Mode.NARROW, Mode.BORDER)
 
 
+def threshold_bps(briefing: Briefing) -> float:
+    """Below this throughput a follower hurries [bit/s]."""
+    if briefing.gains.threshold == "thesis":
+        return THESIS_THRESHOLD_BPS
+    ideal = ideal_throughput_bps(briefing.radio.rate_mbps, briefing.team.next_msdu_bytes)
+    return THRESHOLD_SHARE * ideal
+
+
 class Robot:
     """One incarnation of one robot."""
 
     def __init__(self, briefing: Briefing, make_pathfinder: PathfinderMaker = make_pathfinder) -> None:
         self._briefing = briefing
-        self._make_pathfinder = make_pathfinder
-        self._rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
-        body = briefing.body
+        rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
+        body, period = briefing.body, briefing.period_ns / NANOSECONDS
         fan = Fan(body)
-        period = briefing.period_ns / NANOSECONDS
-        self._gains = sampled(briefing.gains, period)
-        dodge = tuple(float(share) for share in self._rng.random(64))
-        self._follower = Follower(body, self._gains, fan, dodge)
-        self._lookout = Lookout(body, fan)
+        gains = sampled(briefing.gains, period)
+        dodge = tuple(float(share) for share in rng.random(64))
+        self._follower = Follower(body, gains, fan, dodge)
+        self._leader = Leader(briefing, gains, fan, make_pathfinder, rng)
         self._safety = SafetyFilter(body, fan, period)
-        self._threshold = THESIS_THRESHOLD_BPS
+        self._threshold = threshold_bps(briefing)
         self._policy = make_policy(briefing.gains, self._threshold)
         self._protocol: Protocol | None = None
-        self._pathfinder: Pathfinder | None = None
         self._formation: Formation | None = None
         self._formation_key: tuple[tuple[int, ...], bool] | None = None
-        self._period_ns = round(briefing.team.next_period * NANOSECONDS)
         self._slot_key: tuple[Pose, tuple[int, ...], bool, bool] | None = None
         self._slot = Pose(0.0, 0.0, 0.0)
-        self._trail: list[tuple[float, float]] = []
+        self._period_ns = round(briefing.team.next_period * NANOSECONDS)
         self._in_position = False
         self._next_ns = 0
         self._k_rho = briefing.gains.k_rho_min
@@ -80,7 +74,6 @@ class Robot:
         self._remaining = 0.0
         self._best_error = math.inf
         self._settling = 0
-        self._wide_since_m = 0.0
         self._notes: list[Note] = []
 
     def step(self, percept: Percept) -> Action:
@@ -92,12 +85,12 @@ class Robot:
         protocol.receive(now_ns, pose, self._in_position, percept.inbox)
         nearest = float(percept.scan.min())
         if protocol.leading:
-            twist = self._lead(protocol, now_ns, pose, percept.scan)
+            twist = self._lead(protocol, now_ns, pose, percept.scan, nearest)
         else:
             twist = self._follow(protocol, now_ns, pose, percept.scan, nearest)
         twist = self._safety.filtered(twist, percept.scan, nearest)
         if not (protocol.leading and protocol.mode is Mode.SETUP and twist.w):
-            protocol.speak(now_ns, pose, tuple(self._trail))
+            protocol.speak(now_ns, pose, self._leader.trail)
         notes = (*self._notes, *protocol.take_notes())
         self._notes = []
         return Action(
@@ -142,80 +135,22 @@ class Robot:
             self._formation_key = key
         return self._formation
 
-    # leading
-
-    def _lead(self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges) -> Twist:
-        briefing = self._briefing
-        goal = briefing.goal
+    def _lead(self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float) -> Twist:
+        goal = self._briefing.goal
         self._target = (goal.x, goal.y)
         self._error = self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
-        self._mark(pose)
-        if protocol.mode is Mode.SETUP:
-            bearing = wrap_angle(math.atan2(goal.y - pose.y, goal.x - pose.x) - pose.heading)
-            return (
-                STANDSTILL
-                if abs(bearing) < ALIGNED
-                else turn_towards(bearing, self._gains, briefing.body)
-            )
-        if protocol.mode is Mode.STOPPED:
-            return STANDSTILL
-        if self._pathfinder is None:
-            self._pathfinder = self._make_pathfinder(briefing, pose, self._rng)
-            self._follower.halt()
-        guidance = self._pathfinder.step(pose, scan, self._mates(protocol, now_ns, pose, scan))
-        self._notes.extend(guidance.notes)
-        self._remaining = guidance.remaining
-        if guidance.progress is not Progress.DRIVING:
-            protocol.phase = Phase.FINAL
-            protocol.fire(Event.ARRIVED)
-            protocol.note("arrived" if guidance.progress is Progress.ARRIVED else "no_way")
-            return STANDSTILL
-        self._watch_passage(protocol, guidance.passage)
-        return guidance.twist
-
-    def _mates(self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges) -> frozenset[int]:
-        """Beams that hit followers, as far as their reports say where they may be by now."""
-        leadership = protocol.leadership
-        if leadership is None or not leadership.reports:
-            return frozenset()
-        age = (now_ns - leadership.opened_ns) / NANOSECONDS
-        reach = self._briefing.body.max_speed * age + MATE_TOLERANCE
-        places = [(report.pose.x, report.pose.y) for report in leadership.reports.values()]
-        return self._lookout.beams(pose, scan, places, reach)
-
-    def _mark(self, pose: Pose) -> None:
-        """Remember the leader's own way."""
-        trail = self._trail
-        if not trail or math.hypot(pose.x - trail[-1][0], pose.y - trail[-1][1]) >= TRAIL_STEP:
-            trail.append((pose.x, pose.y))
-            del trail[:-TRAIL_POINTS]
-
-    def _watch_passage(self, protocol: Protocol, passage: float) -> None:
-        """Narrow and back: column while the passage is too tight for the shape (thesis 3.3.1)."""
-        team, body = self._briefing.team, self._briefing.body
-        if len(protocol.members) < 3:
-            protocol.narrow = False
-            return
-        open_shape = formation(protocol.members, False, team.spacing)
-        needed = min(width(open_shape) + 4.0 * body.radius, 9.0)
-        if passage < needed:
-            self._wide_since_m = 0.0
-            if not protocol.narrow:
-                protocol.narrow = True
-                protocol.note("narrow", passage=passage)
-        elif protocol.narrow:
-            self._wide_since_m += body.leader_speed * self._briefing.period_ns / NANOSECONDS
-            if self._wide_since_m > team.narrow_spacing * len(protocol.members):
-                protocol.narrow = False
-                protocol.note("wide", passage=passage)
-
-    # following
+        self._in_position = True
+        self._follower.halt()
+        twist = self._leader.step(protocol, now_ns, pose, scan, nearest)
+        self._notes.extend(self._leader.notes)
+        if self._leader.remaining > 0.0:
+            self._remaining = self._leader.remaining
+        return twist
 
     def _follow(
         self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float
     ) -> Twist:
-        self._pathfinder = None
-        self._trail.clear()
+        self._leader.begin()
         self._measure(protocol, now_ns)
         link = protocol.link
         leader = link.pose
@@ -231,8 +166,11 @@ class Robot:
         self._in_position = self._error <= IN_POSITION
         if self._at_rest(protocol):
             return STANDSTILL
+        moves = protocol.phase is Phase.DRIVING
         standoff = math.hypot(target.x - leader.x, target.y - leader.y)
-        twist = self._follower.step(pose, scan, nearest, target, link.trail, standoff, self._k_rho)
+        twist = self._follower.step(
+            pose, scan, nearest, target, link.trail, standoff, moves, self._k_rho
+        )
         self._tell_border(protocol)
         return twist
 
