@@ -175,7 +175,7 @@ class TeamSection:
     next_msdu_bytes: int = 800
     profile: Literal["team", "thesis"] = "team"
     orphan: Literal["stop", "solo"] = "stop"
-    successor_timeout: float = 2.0
+    successor_timeout: float = 1.0
     narrow_spacing: float = 1.5
     straggler_speed: float = 1.0
 
@@ -239,7 +239,8 @@ class RadioSection:
     retry_limit: attempts of one frame. cts_timeout_us: from the end of a frame until its answer is
         given up (SIFS + slot + preamble; 334 in the standard of 1999).
     queue_frames: bound of a card's queue; a frame that finds it full is dropped.
-    routing: "direct" (one hop only).
+    routing: "direct" (one hop only), "mrsr" (on DSR) or "mrdv" (on AODV).
+    gamma_distance: remaining distance per unit of gamma in p_r = min(1, (1/v)^gamma) [m].
     """
 
     preset: Literal["thesis", "physical"] = "thesis"
@@ -261,7 +262,8 @@ class RadioSection:
     mac_header_bytes: int = 34
     cts_timeout_us: float = 222.0
     queue_frames: int = 64
-    routing: Literal["direct"] = "direct"
+    routing: Literal["direct", "mrsr", "mrdv"] = "mrdv"
+    gamma_distance: float = 10.0
 
     def problems(self) -> Iterator[Problem]:
         if self.rate_mbps not in (1.0, 2.0, 5.5, 11.0):
@@ -273,6 +275,7 @@ class RadioSection:
             "reference_distance",
             "mac_header_bytes",
             "queue_frames",
+            "gamma_distance",
         )
         for key in ("wall_loss_db", "rts_threshold_bytes", "shadowing_db"):
             value = getattr(self, key)

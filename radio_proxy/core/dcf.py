@@ -258,9 +258,9 @@ class Dcf:
         sender = exchange.sender
         self._end(exchange.emission, now)
         if not sender.gone:
-            frame = self._finish(sender)
+            frame = self._finish(sender, now)
             self._listener.on_broadcast_done(sender.index, frame, exchange.emission, now)
-            self._rest(sender, now)
+            self._serve_next(sender, now)
 
     def _hears(self, exchange: Exchange, at: Station, rate_mbps: float, size_bytes: int) -> bool:
         """Judge the frame on the air at one end of the exchange, and remember what kept it away."""
@@ -350,9 +350,9 @@ class Dcf:
             asked = now - timing.ack - timing.sifs - 2 * exchange.delay
             self.at(max(now, asked + timing.answer_timeout), self._on_timeout, exchange)
         elif not sender.gone:
-            frame = self._finish(sender)
+            frame = self._finish(sender, now)
             self._listener.on_acknowledged(sender.index, frame, now)
-            self._rest(sender, now)
+            self._serve_next(sender, now)
 
     def _answer(self, exchange: Exchange, speaker: Station, now: int) -> bool:
         """Emit the next frame of an exchange a SIFS after the last; False when its speaker has left."""
@@ -371,20 +371,19 @@ class Dcf:
             sender.slots = self._draws.slots(self.timing.window(frame.attempts))
             self._contend(sender, now)
             return
-        self._finish(sender)
+        self._finish(sender, now)
         self._listener.on_undeliverable(sender.index, frame, now)
-        self._rest(sender, now)
+        self._serve_next(sender, now)
 
-    def _finish(self, station: Station) -> Frame:
-        """The head leaves the card, sent or given up."""
+    def _finish(self, station: Station, now: int) -> Frame:
+        """The head leaves the card; a backoff follows in any case (802.11-1999, 9.2.5.2)."""
         frame = station.frame
         assert frame is not None
         station.frame = None
-        return frame
-
-    def _rest(self, station: Station, now: int) -> None:
-        """After every frame comes a backoff, with or without a next frame (802.11-1999, 9.2.5.2)."""
         station.slots = self._draws.slots(self.timing.window(0))
         self._contend(station, now)
+        return frame
+
+    def _serve_next(self, station: Station, now: int) -> None:
         if station.frame is None and station.queue:
             self._serve(station, now, hold_back=True)

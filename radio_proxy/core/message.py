@@ -5,13 +5,16 @@ from dataclasses import dataclass, replace
 from onehop.contracts.messages import Fate, Verdict
 from radio_proxy.core.propagation import SILENT_DB
 
+SEARCHES = 2
+"""Discoveries that the origin makes for one message: at first, and once more when a hop failed."""
+
 
 @dataclass(slots=True, eq=False)
 class Message:
     """One message of one robot. Times in ns, -1 until they are known.
 
     copies: how many robots hold it (an acknowledgement that is lost leaves two). searching_since: start
-    of the discovery that it waits for.
+    of the discovery that it waits for; searches: how many there were.
     """
 
     number: int
@@ -26,6 +29,7 @@ class Message:
     discovery: int = 0
     discovery_before_service: int = 0
     searching_since: int = -1
+    searches: int = 0
     sinr_db: float = SILENT_DB
     bit_error_rate: float = 0.5
 
@@ -42,6 +46,7 @@ class Message:
         """Its origin has no route for it and looks for one."""
         if self.searching_since < 0:
             self.searching_since = now
+            self.searches += 1
 
     def end_search(self, now: int) -> None:
         """A route was found, or given up."""
@@ -76,7 +81,7 @@ class Message:
 class Data:
     """A copy of a message in the hands of one robot. path, attempts: how it came there.
 
-    route, salvaged: the source route that it carries and how often it was mended (MRSR only).
+    route, salvaged: the source route that it carries and how often it was mended (MRSR).
     """
 
     message: Message

@@ -14,13 +14,14 @@ from onehop.contracts.messages import (
     Fate,
     Inbox,
     Offer,
+    Presence,
     Reception,
     Transmission,
     Truth,
     Verdict,
 )
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import RadioBriefing
+from onehop.contracts.scenario import RadioBriefing, RadioSection
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.dcf import EVERYONE, Dcf, Frame
 from radio_proxy.core.draws import Draws
@@ -30,18 +31,26 @@ from radio_proxy.core.message import Data, Message
 from radio_proxy.core.propagation import Field, link_budget
 from radio_proxy.core.routing.direct import DirectRouter
 from radio_proxy.core.routing.interface import Router
-
-ROUTERS: dict[str, Callable[["Card"], Router]] = {"direct": DirectRouter}
+from radio_proxy.core.routing.mrdv import MrdvRouter
+from radio_proxy.core.routing.mrsr import MrsrRouter
 
 
 class Card:
     """The network card of one incarnation of one robot, as its routing protocol sees it."""
 
-    def __init__(self, radio: "Radio", robot: int, protocol: str) -> None:
-        self.robot = robot
+    def __init__(self, radio: "Radio", presence: Presence, section: RadioSection, now: int) -> None:
+        self.robot = presence.robot
+        self.incarnation = presence.incarnation
         self.gone = False
         self._radio = radio
-        self.router = ROUTERS[protocol](self)
+        self.router = self._make_router(section, now)
+
+    def _make_router(self, section: RadioSection, now: int) -> Router:
+        if section.routing == "mrsr":
+            return MrsrRouter(self, section.gamma_distance)
+        if section.routing == "mrdv":
+            return MrdvRouter(self, section.gamma_distance, now)
+        return DirectRouter(self)
 
     def send(self, packet: object, next_hop: int, size_bytes: int, kind: str, now: int) -> bool:
         return self._radio.send(self.robot, packet, next_hop, size_bytes, kind, now)
@@ -105,7 +114,7 @@ class Radio:
     def carry(self, truth: Truth) -> Carriage:
         """What reaches whom in the tick that ends at truth.time_ns, and what became of the rest."""
         start = truth.time_ns - self._period
-        self._welcome(truth)
+        self._welcome(truth, start)
         self._field.update(truth.present, truth.cuts, truth.jams)
         self._offers = truth.offers
         self._crowded = sum(bool(offer.outbox) for offer in truth.offers) > 1
@@ -132,7 +141,7 @@ class Radio:
         self._verdicts = []
         return Carriage(inboxes, Ether(tick, time_ns, verdicts, self._control_bytes))
 
-    def _welcome(self, truth: Truth) -> None:
+    def _welcome(self, truth: Truth, now: int) -> None:
         """Cards of robots that left (or came back as another process) die; new ones start empty."""
         incarnations = tuple([(p.robot, p.incarnation) for p in truth.present])
         if incarnations == self._incarnations:
@@ -140,15 +149,18 @@ class Radio:
         before, after = dict(self._incarnations), dict(incarnations)
         self._incarnations = incarnations
         left = [robot for robot in sorted(before) if after.get(robot) != before[robot]]
-        for robot in left:
-            self._cards.pop(robot).gone = True
+        died = [self._cards.pop(robot) for robot in left]
+        for card in died:
+            card.gone = True
+            for data in card.router.abandon():
+                self.drop(data, Fate.SENDER_GONE)
         for robot in left:
             for frame in self._dcf.remove(self._index[robot]):
                 if isinstance(frame.packet, Data):
                     self.drop(frame.packet.tried(frame.attempts), Fate.SENDER_GONE)
-        for robot, incarnation in incarnations:
-            if before.get(robot) != incarnation:
-                self._cards[robot] = Card(self, robot, self._section.routing)
+        for presence in truth.present:
+            if before.get(presence.robot) != presence.incarnation:
+                self._cards[presence.robot] = Card(self, presence, self._section, now)
 
     def _submit(self, robot: int, transmission: Transmission, now: int) -> None:
         self._numbers[robot] += 1

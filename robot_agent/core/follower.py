@@ -19,7 +19,7 @@ from onehop.contracts.messages import Ranges
 from onehop.contracts.scenario import GainsSection, RobotSection
 from robot_agent.core.scan import Fan
 from robot_agent.core.steering import LOOKAHEAD, Steering
-from robot_agent.core.tracking import polar_error, polar_twist, turn_towards, within_limits
+from robot_agent.core.tracking import PolarError, polar_error, polar_twist, turn_towards, within_limits
 
 IN_POSITION = 0.3
 """A robot is in its slot within this distance [m]."""
@@ -36,8 +36,8 @@ BLOCKED_TICKS, CLEAR_TICKS = 10, 6
 REACTION = 0.4
 """A robot drives at most as fast as lets it stop within this time before what it sees [s]."""
 
-STUCK_TICKS = 40
-"""Ticks without getting anywhere after which a robot backs out of a jam."""
+STUCK_TICKS = 20
+"""Decisions, one in two ticks, without getting anywhere after which a robot backs out of a jam."""
 
 
 class Follower:
@@ -60,6 +60,7 @@ class Follower:
         self._escape_side = 1
         self._aim: tuple[float, float] | None = None
         self._aim_age = 0
+        self._held: tuple[float, float] | None = None
         self.border = False
 
     def halt(self) -> None:
@@ -90,16 +91,21 @@ class Follower:
         if nearest > min(LOOKAHEAD, rho + 0.5):
             self._clear()
             if not self.border:
-                return self._track(pose, target, bearing, k_rho, LOOKAHEAD)
+                return self._track(error, bearing, k_rho, LOOKAHEAD)
+        if self._held is not None:
+            course, speed = self._held
+            self._held = None
+            return self._steer(wrap_angle(course - pose.heading), speed)
         steering = self._steering
         steering.look(scan)
-        ahead = abs(bearing) <= math.pi / 2.0
-        free = steering.free_distance(bearing) if ahead else LOOKAHEAD
-        if free >= min(rho, LOOKAHEAD - 0.01):
+        if abs(bearing) > FACING:
+            if not self.border:
+                return self._track(error, bearing, k_rho, LOOKAHEAD)
+        elif (free := steering.free_distance(bearing)) >= min(rho, LOOKAHEAD - 0.01):
             self._clear()
             if not self.border:
-                return self._track(pose, target, bearing, k_rho, free)
-        elif ahead:
+                return self._track(error, bearing, k_rho, free)
+        else:
             self._clear_for = 0
             self._blocked += 1
             self.border = self.border or self._blocked >= BLOCKED_TICKS
@@ -111,10 +117,9 @@ class Follower:
         if self._clear_for >= CLEAR_TICKS:
             self.border, self._side, self._aim = False, 0, None
 
-    def _track(self, pose: Pose, target: Pose, bearing: float, k_rho: float, free: float) -> Twist:
+    def _track(self, error: PolarError, bearing: float, k_rho: float, free: float) -> Twist:
         """The way to the slot is clear: thesis eq. 3.11, 3.12."""
         self._idle = 0
-        error = polar_error(pose, target)
         if error.reverse and self._gains.reverse:
             return within_limits(
                 polar_twist(error, self._gains, k_rho, self._body.max_speed), self._body
@@ -159,15 +164,17 @@ class Follower:
         if self.border and self._side == 0:
             self._side = 1 if direction >= bearing else -1
         speed = min(k_rho * distance, self._body.max_speed, max(0.0, free) / REACTION)
-        speed *= max(0.0, math.cos(direction)) ** 2
-        if speed < 0.05:
+        if speed * math.cos(direction) ** 2 < 0.05:
             self._stuck()
         else:
-            self._idle = max(0, self._idle - 1)
-        w = max(
-            -self._body.max_turn_rate, min(self._body.max_turn_rate, self._gains.k_alpha * direction)
-        )
-        return Twist(speed, w)
+            self._idle = max(0, self._idle - 2)
+        self._held = pose.heading + direction, speed
+        return self._steer(direction, speed)
+
+    def _steer(self, direction: float, speed: float) -> Twist:
+        """Drive in a direction, slowly while it is still turned to."""
+        facing = max(0.0, math.cos(direction)) ** 2
+        return Twist(speed * facing, turn_towards(direction, self._gains, self._body).w)
 
     def _trail_aim(self, pose: Pose, trail: Sequence[tuple[float, float]]) -> tuple[float, float] | None:
         """The newest point of the leader's trail that is in sight; kept for a quarter of a second."""
@@ -204,5 +211,4 @@ class Follower:
         if choice is None:
             return Twist(0.0, self._escape_side * 0.6 * self._body.max_turn_rate)
         direction, free = choice
-        speed = min(0.6, max(0.0, free) / REACTION) * max(0.0, math.cos(direction)) ** 2
-        return Twist(speed, turn_towards(direction, self._gains, self._body).w)
+        return self._steer(direction, min(0.6, max(0.0, free) / REACTION))

@@ -32,6 +32,16 @@ class Lookout:
         self, pose: Pose, scan: Ranges, places: Sequence[tuple[float, float]], reach: float
     ) -> frozenset[int]:
         """Beams that hit a robot within `reach` of one of the places [m], map frame."""
+        sight = self._range + reach
+        c, s = math.cos(pose.heading), math.sin(pose.heading)
+        places = [
+            (x, y)
+            for x, y in places
+            if math.hypot(x - pose.x, y - pose.y) < sight
+            and (x - pose.x) * c + (y - pose.y) * s > -reach
+        ]
+        if not places:
+            return frozenset()
         ranges = np.minimum(scan, self._range + 2.0 * JUMP)
         edges = np.flatnonzero(np.abs(np.diff(ranges)) > JUMP) + 1
         found: list[int] = []

@@ -31,6 +31,7 @@ HANDOVER_PATIENCE = 2
 """Periods for which a hand-over is repeated before the new leader is given up."""
 
 NANOSECONDS = 1_000_000_000
+FOREVER_NS = 2**62
 
 
 class Link:
@@ -142,7 +143,7 @@ class Protocol:
             elif isinstance(message, Beacon):
                 self._on_beacon(now_ns, pose, source, message)
             else:
-                self._on_join(now_ns, source, message)
+                self._on_join(now_ns, pose, source, message)
 
     def _on_command(
         self, now_ns: int, pose: Pose, in_position: bool, command: Command, reception: Reception
@@ -226,16 +227,21 @@ class Protocol:
         else:
             self.counters["stale"] += 1
 
-    def _on_join(self, now_ns: int, source: int, join: Join) -> None:
+    def _on_join(self, now_ns: int, pose: Pose, source: int, join: Join) -> None:
+        """A robot without a leader calls. Who has missed a Next of the same leader agrees with it."""
         leadership = self.leadership
         if leadership is None:
-            self.counters["stale"] += 1
+            missed = now_ns - self.link.heard_ns > self._period_ns * 5 // 4
+            if missed and not self.waiting and source in self.members and self.mode is not Mode.JOINING:
+                self._on_silence(now_ns, pose)
+            else:
+                self.counters["stale"] += 1
         elif source not in leadership.roster.members:
             self._meet(now_ns, source, join.epoch, (source,))
-        elif join.epoch >= leadership.roster.epoch:
+        elif join.epoch > leadership.roster.epoch:
             self._change_roster(now_ns, leadership.roster.merged(join.epoch, ()), ())
-        else:
-            leadership.due_ns = min(leadership.due_ns, now_ns)
+        elif now_ns - leadership.opened_ns >= self._successor_patience_ns // 2:
+            leadership.due_ns = now_ns
 
     def _meet(self, now_ns: int, source: int, epoch: int, members: tuple[int, ...]) -> None:
         """A leader met a stranger: take it and those it speaks for in, once it is known well enough."""
@@ -317,7 +323,7 @@ class Protocol:
                 self.link.pose = pose
                 self._lead_period(now_ns, pose, trail)
         elif now_ns - self.link.heard_ns >= self._patience_ns:
-            self._on_silence(now_ns)
+            self._on_silence(now_ns, pose)
             if self.leadership is not None:
                 self.speak(now_ns, pose, trail)
         if self._handover is not None and now_ns >= self._handover[1]:
@@ -363,6 +369,8 @@ class Protocol:
             return lost
         self.phase = Phase.DRIVING
         self.fire(Event.FORMED)
+        if not leadership.followers:
+            self.fire(Event.LEFT_ALONE)
         if self.open:
             return lost
         return tuple(sorted({*lost, *missing}))
@@ -375,15 +383,19 @@ class Protocol:
         sequence = self.leadership.sequence
         return Command(order, self.roster, sequence, self.phase, self.narrow, pose, lost, trail)
 
-    def _on_silence(self, now_ns: int) -> None:
-        """Lost_Leader: the leader, or the one elected in its place, was silent for too long."""
+    def _on_silence(self, now_ns: int, pose: Pose) -> None:
+        """Lost_Leader: the leader, or the one elected in its place, was silent for too long.
+
+        In profile `team` the robot also calls: a leader that still lives takes it in again, and who
+        missed the same leader elects at the same time.
+        """
         if self.roster is None or self.mode is Mode.JOINING:
             self._go_alone(now_ns)
             return
         silent = self.roster.leader
         self.note("lost_leader", leader=silent)
         self._acquaintances.give_up((silent,))
-        if not self.open and self.mode in (Mode.LOST_LEADER, Mode.STOPPED) and self.waiting:
+        if not self.open and self.mode is Mode.LOST_LEADER:
             self._go_alone(now_ns)
             return
         self._adopt(self.roster.without((silent,)))
@@ -391,16 +403,16 @@ class Protocol:
             self._lead(now_ns)
         else:
             self.fire(Event.LEADER_SILENT)
-            self._wait_for_leader(
-                now_ns, self._successor_patience_ns if self.open else self._leader_patience_ns
-            )
+            patience = self._successor_patience_ns if self.open else self._leader_patience_ns
+            self._wait_for_leader(now_ns, patience)
+            if self.open:
+                self._send(BROADCAST, Join(self.epoch, pose), ACK_MSDU_BYTES)
 
     def _go_alone(self, now_ns: int) -> None:
         """Nobody is left to hear (thesis 3.8.1: stop, or plan to the goal alone)."""
         if not self.open and self.team.orphan == "stop":
             self.fire(Event.FORSAKEN)
-            self.waiting = True
-            self.link.heard_ns = now_ns
+            self._wait_for_leader(now_ns, FOREVER_NS)
             return
         self._adopt(Roster(self.epoch + 1, (self.robot,)))
         self._lead(now_ns)

@@ -23,7 +23,7 @@ from robot_agent.core.planning import Pathfinder, Progress, make_pathfinder
 from robot_agent.core.protocol import NANOSECONDS, Protocol
 from robot_agent.core.safety import SafetyFilter
 from robot_agent.core.scan import Fan
-from robot_agent.core.tracking import turn_towards
+from robot_agent.core.tracking import sampled, turn_towards
 from robot_agent.core.trail import behind
 
 PathfinderMaker = Callable[[Briefing, Pose, np.random.Generator], Pathfinder]
@@ -55,10 +55,12 @@ class Robot:
         self._rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
         body = briefing.body
         fan = Fan(body)
+        period = briefing.period_ns / NANOSECONDS
+        self._gains = sampled(briefing.gains, period)
         dodge = tuple(float(share) for share in self._rng.random(64))
-        self._follower = Follower(body, briefing.gains, fan, dodge)
+        self._follower = Follower(body, self._gains, fan, dodge)
         self._lookout = Lookout(body, fan)
-        self._safety = SafetyFilter(body, fan, briefing.period_ns / NANOSECONDS)
+        self._safety = SafetyFilter(body, fan, period)
         self._threshold = THESIS_THRESHOLD_BPS
         self._policy = make_policy(briefing.gains, self._threshold)
         self._protocol: Protocol | None = None
@@ -66,6 +68,8 @@ class Robot:
         self._formation: Formation | None = None
         self._formation_key: tuple[tuple[int, ...], bool] | None = None
         self._period_ns = round(briefing.team.next_period * NANOSECONDS)
+        self._slot_key: tuple[Pose, tuple[int, ...], bool, bool] | None = None
+        self._slot = Pose(0.0, 0.0, 0.0)
         self._trail: list[tuple[float, float]] = []
         self._in_position = False
         self._next_ns = 0
@@ -107,6 +111,11 @@ class Robot:
             notes=notes,
         )
 
+    @property
+    def ignored(self) -> dict[str, int]:
+        """How many messages were ignored so far, by why: garbled, stale, foreign."""
+        return dict(self._protocol.counters) if self._protocol is not None else {}
+
     def _status(self, protocol: Protocol) -> Status:
         leading = protocol.leading
         return Status(
@@ -146,7 +155,7 @@ class Robot:
             return (
                 STANDSTILL
                 if abs(bearing) < ALIGNED
-                else turn_towards(bearing, briefing.gains, briefing.body)
+                else turn_towards(bearing, self._gains, briefing.body)
             )
         if protocol.mode is Mode.STOPPED:
             return STANDSTILL
@@ -229,6 +238,12 @@ class Robot:
 
     def _slot_pose(self, protocol: Protocol, leader: Pose) -> Pose:
         """This robot's slot in the map frame, from the leader's last pose."""
+        key = (leader, protocol.members, protocol.narrow, protocol.mode is Mode.JOINING)
+        if key != self._slot_key:
+            self._slot_key, self._slot = key, self._placed(protocol, leader)
+        return self._slot
+
+    def _placed(self, protocol: Protocol, leader: Pose) -> Pose:
         shape = self._shape(protocol)
         if protocol.mode is Mode.JOINING or shape.leader == self._briefing.robot:
             x, y = to_map(leader, -self._briefing.team.spacing, 0.0)

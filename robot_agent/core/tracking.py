@@ -9,6 +9,7 @@ the arc is then still the one that the controller meant; the thesis has no limit
 """
 
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
@@ -27,6 +28,14 @@ class PolarError(NamedTuple):
     alpha: float
     beta: float
     reverse: bool
+
+
+def sampled(gains: GainsSection, period: float) -> GainsSection:
+    """The same gains, k_alpha lowered to what a controller with this period [s] can close in one tick.
+
+    Differs: the thesis's law is continuous; sampled too slowly, k_alpha = 8 swings for ever.
+    """
+    return replace(gains, k_alpha=min(gains.k_alpha, 1.0 / period))
 
 
 def polar_error(pose: Pose, target: Pose) -> PolarError:

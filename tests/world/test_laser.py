@@ -50,7 +50,7 @@ def oracle(segments: FloatArray, discs: FloatArray, pose: FloatArray, body: Robo
 def undecided(
     segments: FloatArray, discs: FloatArray, pose: FloatArray, body: RobotSection, found: FloatArray
 ) -> FloatArray:
-    """Beams within 1e-7 rad of an edge of something, or at the limit of the range: either answer holds."""
+    """Beams within 1e-7 rad of an edge, or at the limit of the range: either answer holds."""
     half = math.radians(body.laser_fov_deg) / 2.0
     beams = pose[2] + np.linspace(-half, half, body.laser_beams)
     ends = np.vstack((segments[:, :2], segments[:, 2:])) - pose[:2]

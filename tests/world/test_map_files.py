@@ -155,7 +155,7 @@ def test_the_origin_turns_the_map() -> None:
     ],
 )
 def test_a_bad_yaml_file_is_refused_by_key(yaml: str, where: str, problem: str) -> None:
-    with pytest.raises(MapError, match=".") as refusal:
+    with pytest.raises(MapError) as refusal:
         map_files("m.yaml", yaml.encode())
     assert refusal.value.where == where
     assert problem in refusal.value.problem
@@ -229,7 +229,7 @@ def test_cell_is_metres_a_cell() -> None:
     ],
 )
 def test_a_bad_grid_is_refused_by_line(text: str, where: str, problem: str) -> None:
-    with pytest.raises(MapError, match=".") as refusal:
+    with pytest.raises(MapError) as refusal:
         movingai(text)
     assert refusal.value.where == where
     assert problem in refusal.value.problem

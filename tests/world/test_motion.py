@@ -103,7 +103,8 @@ def test_two_robots_that_meet_stop_in_the_middle() -> None:
 
 
 def test_only_the_robot_that_drives_into_another_is_stopped() -> None:
-    after, driven, touched = drive(YARD, [(20.0, 20.0, 0.0), (20.41, 20.0, 0.0)], [(3.0, 0.0), (1.0, 0.0)])
+    poses = [(20.0, 20.0, 0.0), (20.41, 20.0, 0.0)]
+    after, driven, touched = drive(YARD, poses, [(3.0, 0.0), (1.0, 0.0)])
     assert touched == [1, NOBODY]
     assert driven[1, 0] == 1.0
     assert after[1, 0] == pytest.approx(20.46)

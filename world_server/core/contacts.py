@@ -27,8 +27,10 @@ class Touches:
         self._touching = {pair for pair in self._touching if self._gap(poses, *pair) <= _RELEASE}
         contacts: list[Contact] = []
         for row, other in enumerate(touched.tolist()):
+            if other == NOBODY:
+                continue
             pair = (row, other) if other == WALL else (min(row, other), max(row, other))
-            if other == NOBODY or pair in self._touching:
+            if pair in self._touching:
                 continue
             self._touching.add(pair)
             contacts.append(self._contact(poses, row, other))

@@ -20,8 +20,28 @@ from world_server.core.walls import FloatArray, WallMap
 
 Scans: TypeAlias = npt.NDArray[np.float32]
 
-_SPARE = 1
-"""Beams tested beyond each end of an interval: more than the rounding of its angles can hide."""
+_SLACK = 1e-4
+"""What `_direction` may be wrong by, and an interval is widened by at each end [rad]."""
+
+
+@numba.njit(cache=True)
+def _direction(x: float, y: float) -> float:
+    """atan2(y, x) within _SLACK: cheap, since it only selects the beams that are tested exactly.
+
+    The polynomial is a least-maximum fit of atan on [0, 1]; its error is 8.2e-5.
+    """
+    flat, steep = abs(x), abs(y)
+    turned = steep > flat
+    if turned:
+        flat, steep = steep, flat
+    slope = steep / flat if flat > 0.0 else 0.0
+    square = slope * slope
+    angle = slope * (0.99921378 + square * (-0.32117473 + square * (0.14626394 - 0.0389862 * square)))
+    if turned:
+        angle = 0.5 * math.pi - angle
+    if x < 0.0:
+        angle = math.pi - angle
+    return -angle if y < 0.0 else angle
 
 
 @numba.njit(cache=True)
@@ -59,15 +79,17 @@ def _look_at_wall(
     nx, ny = ax + along * ex, ay + along * ey
     if nx * nx + ny * ny > limit * limit:
         return
-    from_a, from_b = math.atan2(ay, ax), math.atan2(by, bx)
+    from_a, from_b = _direction(ax, ay), _direction(bx, by)
     low, high = min(from_a, from_b), max(from_a, from_b)
-    right = math.ceil((low + half) * per_radian) - _SPARE
-    left = math.floor((high + half) * per_radian) + _SPARE
-    if high - low <= math.pi:
+    if high - low <= math.pi + 2.0 * _SLACK:
+        right = math.ceil((low - _SLACK + half) * per_radian)
+        left = math.floor((high + _SLACK + half) * per_radian)
         _wall_beams(ax, ay, bx, by, right, left, fan, ranges)
-    else:
-        _wall_beams(ax, ay, bx, by, left - 2 * _SPARE, len(ranges) - 1, fan, ranges)
-        _wall_beams(ax, ay, bx, by, 0, right + 2 * _SPARE, fan, ranges)
+    if high - low >= math.pi - 2.0 * _SLACK:
+        right = math.ceil((high - _SLACK + half) * per_radian)
+        left = math.floor((low + _SLACK + half) * per_radian)
+        _wall_beams(ax, ay, bx, by, right, len(ranges) - 1, fan, ranges)
+        _wall_beams(ax, ay, bx, by, 0, left, fan, ranges)
 
 
 @numba.njit(cache=True)
@@ -76,13 +98,13 @@ def _look_at_disc(
     fan: FloatArray, ranges: FloatArray,
 ) -> None:  # fmt: skip
     """Shorten the beams that hit a disc, centre in the robot's frame [m]."""
-    distance = math.hypot(cx, cy)
-    if distance - radius > limit or distance <= radius:
+    squared = cx * cx + cy * cy
+    if squared > (limit + radius) * (limit + radius) or squared <= radius * radius:
         return
-    middle, width = math.atan2(cy, cx), math.asin(radius / distance)
+    middle, width = math.atan2(cy, cx), math.asin(radius / math.sqrt(squared)) + _SLACK
     for lap in (-math.tau, 0.0, math.tau):
-        right = max(0, math.ceil((middle + lap - width + half) * per_radian) - _SPARE)
-        left = min(len(ranges) - 1, math.floor((middle + lap + width + half) * per_radian) + _SPARE)
+        right = max(0, math.ceil((middle + lap - width + half) * per_radian))
+        left = min(len(ranges) - 1, math.floor((middle + lap + width + half) * per_radian))
         for beam in range(right, left + 1):
             dx, dy = fan[beam, 0], fan[beam, 1]
             off = cx * dy - cy * dx

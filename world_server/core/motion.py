@@ -105,7 +105,7 @@ def _approach(
     """How fast robot i itself drives towards robot j at `time`, times their distance."""
     heading = poses[i, 2] + twists[i, 1] * time
     dx, dy = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
-    return twists[i, 0] * (math.cos(heading) * dx + math.sin(heading) * dy)
+    return float(twists[i, 0] * (math.cos(heading) * dx + math.sin(heading) * dy))
 
 
 @numba.njit(cache=True)

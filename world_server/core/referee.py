@@ -6,10 +6,11 @@ reach of its formation has arrived; the rest is lost, and the referee says since
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import NamedTuple
 
-from onehop.contracts.messages import Lost, Note, Outcome, Reign
+from onehop.contracts.geometry import Pose
+from onehop.contracts.messages import Lost, Note, Outcome, Presence, Reign
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.team import Mode, Shape, Status
 
@@ -23,18 +24,24 @@ _MARGIN = 0.1
 """What a robot may stand beyond the goal's tolerance, for the last tick of its braking [m]."""
 
 
-class Standing(NamedTuple):
-    """One present robot: where it is [m], how fast [m/s], and its last word, if it has said any.
+class Scene(NamedTuple):
+    """What the referee looks at after a tick.
 
-    waiting: it is held by a fault that will end by itself, so its standing still means nothing.
+    statuses: the last word of those who have said any. waiting: robots held by a fault that will end by
+    itself, whose standing still means nothing. collisions: contacts so far.
     """
 
-    robot: int
-    x: float
-    y: float
-    speed: float
-    status: Status | None
-    waiting: bool
+    ticks: int
+    time_ns: int
+    present: tuple[Presence, ...]
+    statuses: Mapping[int, Status]
+    waiting: frozenset[int]
+    collisions: int
+
+    def mode(self, robot: int) -> Mode | None:
+        """What a robot says it is doing, if it has said anything."""
+        status = self.statuses.get(robot)
+        return None if status is None else status.mode
 
 
 class Referee:
@@ -61,129 +68,117 @@ class Referee:
         self._departed.pop(robot, None)
 
     def on_notes(self, robot: int, notes: tuple[Note, ...]) -> None:
-        """Remember a robot's last note: the reason it gives should it stop."""
-        if notes:
-            self._last_words[robot] = notes[-1].kind.replace("_", " ")
+        """Remember the last of a robot's notes: the reason it gives should it stop."""
+        self._last_words[robot] = notes[-1].kind.replace("_", " ")
 
-    def judge(
-        self, ticks: int, time_ns: int, standing: Sequence[Standing], hope: bool, collisions: int
-    ) -> Outcome | None:
-        """The outcome after `ticks` ticks, if there is one. hope: somebody will yet be restarted."""
-        self._watch(time_ns, standing)
-        verdict = self._verdict(time_ns, standing, hope)
-        if verdict is None:
-            return None
-        outcome, reason = verdict
-        return self.close(outcome, reason, ticks, time_ns, standing, collisions)
+    def judge(self, scene: Scene, hope: bool) -> Outcome | None:
+        """The outcome, if the mission has one by now. hope: somebody will yet be restarted."""
+        self._watch(scene)
+        verdict = self._verdict(scene, hope)
+        return None if verdict is None else self.close(*verdict, scene)
 
-    def close(
-        self, outcome: str, reason: str, ticks: int, time_ns: int,
-        standing: Sequence[Standing], collisions: int,
-    ) -> Outcome:  # fmt: skip
+    def close(self, outcome: str, reason: str, scene: Scene) -> Outcome:
         """The final account, whatever ended the mission."""
-        arrived = self._arrived(standing) if outcome == "arrived" else ()
+        arrived = self._arrived(scene) if outcome == "arrived" else ()
         return Outcome(
             outcome=outcome,
             reason=reason,
             arrived=arrived,
-            lost=tuple(
-                self._loss(robot, time_ns / 1e9, standing)
-                for robot in self._robots
-                if robot not in arrived
-            ),
+            lost=tuple(self._loss(robot, scene) for robot in self._robots if robot not in arrived),
             leaders=tuple(self._reigns),
-            ticks=ticks,
-            sim_s=time_ns / 1e9,
-            collisions=collisions,
+            ticks=scene.ticks,
+            sim_s=scene.time_ns / 1e9,
+            collisions=scene.collisions,
         )
 
-    def _watch(self, time_ns: int, standing: Sequence[Standing]) -> None:
+    def _watch(self, scene: Scene) -> None:
         """Note who moves, and who begins to act as a leader with which roster."""
-        for one in standing:
-            if one.speed > STILL or one.waiting:
-                self._moved_ns = time_ns
-            status = one.status
-            if status is None or status.leader != one.robot:
-                self._crowned.pop(one.robot, None)
+        for one in scene.present:
+            robot = one.robot
+            if not -STILL < one.twist.v < STILL or robot in scene.waiting:
+                self._moved_ns = scene.time_ns
+            status = scene.statuses.get(robot)
+            if status is None or status.leader != robot:
+                self._crowned.pop(robot, None)
                 continue
-            before = self._crowned.get(one.robot)
-            self._crowned[one.robot] = status
-            if before is not None and _roster(before) == _roster(status):
-                continue
-            self._reigns.append(
-                Reign(
-                    at_s=time_ns / 1e9,
-                    leader=status.leader,
-                    epoch=status.epoch,
-                    members=status.members,
-                    shape=status.shape.value,
+            before = self._crowned.get(robot)
+            self._crowned[robot] = status
+            if before is None or _roster(before) != _roster(status):
+                self._reigns.append(
+                    Reign(
+                        at_s=scene.time_ns / 1e9,
+                        leader=robot,
+                        epoch=status.epoch,
+                        members=status.members,
+                        shape=status.shape.value,
+                    )
                 )
-            )
 
-    def _verdict(self, time_ns: int, standing: Sequence[Standing], hope: bool) -> tuple[str, str] | None:
-        if not standing:
+    def _verdict(self, scene: Scene, hope: bool) -> tuple[str, str] | None:
+        if not scene.present:
             return None if hope else ("failed", "no robot is left")
-        if time_ns >= self._limit_ns:
-            if self._arrived(standing):
-                return "arrived", self._arrival(standing) + " when the time was up"
+        if scene.time_ns >= self._limit_ns:
+            if self._arrived(scene):
+                return "arrived", self._arrival(scene) + " when the time was up"
             return "failed", f"time limit of {self._limit_ns / 1e9:g} s"
-        if self._moved_ns == time_ns:
+        if self._moved_ns == scene.time_ns:
             return None
-        stopped = all(one.status is not None and one.status.mode is Mode.STOPPED for one in standing)
-        rested = time_ns - self._moved_ns >= _REST_S * 1e9
-        if (stopped or rested) and self._arrived(standing):
-            return "arrived", self._arrival(standing)
+        stopped = all(scene.mode(one.robot) is Mode.STOPPED for one in scene.present)
+        rested = scene.time_ns - self._moved_ns >= _REST_S * 1e9
+        if (stopped or rested) and self._arrived(scene):
+            return "arrived", self._arrival(scene)
         if stopped and rested:
-            return "failed", self._stop_reason(standing)
+            return "failed", self._stop_reason(scene)
         return None
 
-    def _arrival(self, standing: Sequence[Standing]) -> str:
-        leaders = ", ".join(str(one.robot) for one in self._leaders_at_goal(standing))
-        return f"robot {leaders} at the goal with {len(self._arrived(standing))} of {len(self._robots)}"
+    def _arrival(self, scene: Scene) -> str:
+        leaders = ", ".join(str(robot) for robot in self._leaders_at_goal(scene))
+        return f"robot {leaders} at the goal with {len(self._arrived(scene))} of {len(self._robots)}"
 
-    def _stop_reason(self, standing: Sequence[Standing]) -> str:
+    def _stop_reason(self, scene: Scene) -> str:
         words = [
             f"robot {one.robot}: {self._last_words[one.robot]}"
-            for one in standing
+            for one in scene.present
             if one.robot in self._last_words
         ]
         return "everyone stopped before the goal" + (f" ({'; '.join(words)})" if words else "")
 
-    def _leaders_at_goal(self, standing: Sequence[Standing]) -> list[Standing]:
+    def _from_goal(self, pose: Pose) -> float:
+        return math.hypot(pose.x - self._goal.x, pose.y - self._goal.y)
+
+    def _leaders_at_goal(self, scene: Scene) -> list[int]:
         reach = self._goal.tolerance + _MARGIN
         return [
-            one
-            for one in standing
-            if one.status is not None
-            and one.status.leader == one.robot
-            and math.hypot(one.x - self._goal.x, one.y - self._goal.y) <= reach
+            one.robot
+            for one in scene.present
+            if one.robot in self._crowned and self._from_goal(one.pose) <= reach
         ]
 
-    def _arrived(self, standing: Sequence[Standing]) -> tuple[int, ...]:
+    def _arrived(self, scene: Scene) -> tuple[int, ...]:
         """Ids of those who obey a leader at the goal, are on its roster and within its formation."""
-        arrived = set()
-        for leader in self._leaders_at_goal(standing):
-            roster = self._crowned[leader.robot]
+        arrived: list[int] = []
+        for leader in self._leaders_at_goal(scene):
+            roster = self._crowned[leader]
             reach = _extent(roster, self._spacing) + self._goal.tolerance + _MARGIN
-            for one in standing:
-                obeys = one.status is not None and one.status.leader == leader.robot
-                near = math.hypot(one.x - self._goal.x, one.y - self._goal.y) <= reach
-                if obeys and near and one.robot in roster.members:
-                    arrived.add(one.robot)
+            for one in scene.present:
+                status = scene.statuses.get(one.robot)
+                obeys = status is not None and status.leader == leader
+                if obeys and one.robot in roster.members and self._from_goal(one.pose) <= reach:
+                    arrived.append(one.robot)
         return tuple(sorted(arrived))
 
-    def _loss(self, robot: int, end_s: float, standing: Sequence[Standing]) -> Lost:
+    def _loss(self, robot: int, scene: Scene) -> Lost:
         if robot in self._departed:
             return self._departed[robot]
-        dropped = self._dropped(robot, [one.robot for one in self._leaders_at_goal(standing)])
-        return dropped or Lost(robot=robot, at_s=end_s, why="did not arrive")
+        leaders = self._leaders_at_goal(scene) or [reign.leader for reign in self._reigns[-1:]]
+        dropped = self._dropped(robot, leaders[0]) if leaders else None
+        return dropped or Lost(robot=robot, at_s=scene.time_ns / 1e9, why="did not arrive")
 
-    def _dropped(self, robot: int, arrived_leaders: list[int]) -> Lost | None:
-        """When the last leader's line of rosters lost a robot for good, and by whom."""
-        leaders = arrived_leaders or [reign.leader for reign in self._reigns[-1:]]
+    def _dropped(self, robot: int, leader: int) -> Lost | None:
+        """When the line of rosters that led to `leader` lost a robot for good, and by whom."""
         dropped: Lost | None = None
         for reign in self._reigns:
-            if leaders[0] not in reign.members:
+            if leader not in reign.members:
                 continue
             if robot in reign.members:
                 dropped = None

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from onehop.contracts.geometry import STANDSTILL, Pose, Twist
+from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import (
     Action,
     Contact,
@@ -28,11 +28,14 @@ from world_server.core.faults import Faults
 from world_server.core.laser import Laser
 from world_server.core.motion import Motion
 from world_server.core.placement import start_poses
-from world_server.core.referee import Referee, Standing
+from world_server.core.referee import Referee, Scene
 from world_server.core.walls import WallMap
 
 KILLED = "killed (scenario)"
 RESTARTED = "restarted (scenario)"
+
+_AT_REST = (0.0, 0.0)
+"""v [m/s] and w [rad/s] of a robot that was told nothing, or is held."""
 
 
 class World:
@@ -58,8 +61,9 @@ class World:
         self._contacts: tuple[Contact, ...] = ()
         self._collisions = 0
         self._outcome: Outcome | None = None
-        self._truth: Truth | None = None
         self.tick = 0
+        self._truth: Truth | None = None
+        self._present_now: tuple[Presence, ...] | None = None
         self._begin_tick()
 
     @property
@@ -78,12 +82,12 @@ class World:
     def truth(self) -> Truth:
         """Ground truth of this tick: the same value until advance()."""
         if self._truth is None:
-            present = self._presences()
+            present, offers = self._presences(), self._offers
             self._truth = Truth(
                 tick=self.tick,
                 time_ns=self.time_ns,
                 present=present,
-                offers=tuple(self._offers[one.robot] for one in present if one.robot in self._offers),
+                offers=tuple([offers[one.robot] for one in present if one.robot in offers]),
                 cuts=self._faults.cuts,
                 jams=self._faults.jams,
                 contacts=self._contacts,
@@ -95,11 +99,12 @@ class World:
     def observe(self) -> dict[int, Observation]:
         """What each robot that this tick's truth calls present sees now, by id, ids ascending."""
         truth = self.truth()
+        tick, time_ns = truth.tick, truth.time_ns
         looking = np.array([self._row[one.robot] for one in truth.present], dtype=np.int32)
         scans = self._laser.scans(self._poses, looking)
         scans.flags.writeable = False
         return {
-            one.robot: Observation(truth.tick, truth.time_ns, one.incarnation, one.pose, one.twist, scan)
+            one.robot: Observation(tick, time_ns, one.incarnation, one.pose, one.twist, scan)
             for one, scan in zip(truth.present, scans, strict=True)
         }
 
@@ -114,12 +119,9 @@ class World:
         self._contacts = self._touches.begun(self._poses, touched)
         self._collisions += len(self._contacts)
         self.tick += 1
-        self._truth = None
-        if self._outcome is None:
-            self._outcome = self._referee.judge(
-                self.tick, self.time_ns, self._standing(), self._faults.will_restart, self._collisions
-            )
         self._begin_tick()
+        if self._outcome is None:
+            self._outcome = self._referee.judge(self._scene(), self._faults.will_restart)
 
     def fence(self, robot: int, why: str) -> None:
         """Take a robot out of the mission, as of the next truth(): its process died or fell silent."""
@@ -140,6 +142,7 @@ class World:
     def inject(self, fault: FaultSection) -> None:
         """Carry out a fault that is not in the script, as of the next truth(); its at_s is ignored."""
         self._faults.begin(fault, self.time_ns)
+        self._present_now = None
         self._strike(fault)
 
     def outcome(self) -> Outcome | None:
@@ -148,17 +151,17 @@ class World:
 
     def aborted(self, reason: str) -> Outcome:
         """The account of a mission that is broken off now."""
-        return self._referee.close(
-            "aborted", reason, self.tick, self.time_ns, self._standing(), self._collisions
-        )
+        return self._referee.close("aborted", reason, self._scene())
 
     def _begin_tick(self) -> None:
+        self._truth = self._present_now = None
         self._faults.expire(self.time_ns)
         self._due = self._faults.due(self.time_ns)
         for fault in self._due:
             self._strike(fault)
 
     def _strike(self, fault: FaultSection) -> None:
+        """Carry out what of a fault concerns who is present."""
         if fault.kind == "kill":
             for robot in sorted(fault.robots):
                 self.fence(robot, KILLED)
@@ -169,15 +172,17 @@ class World:
 
     def _forget(self, robot: int) -> None:
         """Drop what the last process of a robot said and did."""
+        self._present_now = None
         self._twists[self._row[robot]] = 0.0
         self._offers.pop(robot, None)
         self._statuses.pop(robot, None)
 
     def _take(self, actions: Mapping[int, Action]) -> None:
         """Take over twists, offers and words of the robots that are present."""
-        self._twists[:] = 0.0
         self._offers = {}
-        for robot in self._robots:
+        held = self._faults.held
+        driven = [_AT_REST] * len(self._robots)
+        for robot, row in self._row.items():
             action = actions.get(robot)
             if (
                 action is None
@@ -187,44 +192,42 @@ class World:
                 continue
             self._offers[robot] = Offer(robot, action.speed, action.remaining_distance, action.outbox)
             self._statuses[robot] = action.status
-            self._referee.on_notes(robot, action.notes)
-            if robot not in self._faults.held:
-                self._twists[self._row[robot]] = self._driven(robot, action.twist)
+            if action.notes:
+                self._referee.on_notes(robot, action.notes)
+            if robot not in held:
+                driven[row] = self._driven(robot, action.twist)
+        self._twists[:] = driven
 
     def _driven(self, robot: int, twist: Twist) -> tuple[float, float]:
         """What the motors make of a command: no more than they can."""
-        if not (math.isfinite(twist.v) and math.isfinite(twist.w)):
-            raise ValueError(f"robot {robot} commands the twist ({twist.v}, {twist.w})")
+        v, w = twist.v, twist.w
+        if not (math.isfinite(v) and math.isfinite(w)):
+            raise ValueError(f"robot {robot} commands the twist ({v}, {w})")
         speed, rate = self._body.max_speed, self._body.max_turn_rate
-        return max(-speed, min(speed, twist.v)), max(-rate, min(rate, twist.w))
+        return max(-speed, min(speed, v)), max(-rate, min(rate, w))
 
     def _presences(self) -> tuple[Presence, ...]:
-        poses, twists = self._poses.tolist(), self._twists.tolist()
-        held = self._faults.held
-        return tuple(
-            Presence(
-                robot,
-                self._incarnation[robot],
-                Pose(*poses[row]),
-                Twist(*twists[row]) if twists[row] != [0.0, 0.0] else STANDSTILL,
-                robot in held,
+        """Who is present now, ids ascending; kept until somebody moves, leaves or returns."""
+        if self._present_now is None:
+            poses, twists = self._poses.tolist(), self._twists.tolist()
+            held, incarnation = self._faults.held, self._incarnation
+            self._present_now = tuple(
+                [
+                    Presence(
+                        robot, incarnation[robot], Pose(*poses[row]), Twist(*twists[row]), robot in held
+                    )
+                    for robot, row in self._row.items()
+                    if self._present[robot]
+                ]
             )
-            for robot, row in self._row.items()
-            if self._present[robot]
-        )
+        return self._present_now
 
-    def _standing(self) -> list[Standing]:
-        poses, twists = self._poses.tolist(), self._twists.tolist()
-        released = self._faults.released
-        return [
-            Standing(
-                robot,
-                poses[row][0],
-                poses[row][1],
-                abs(twists[row][0]),
-                self._statuses.get(robot),
-                robot in released,
-            )
-            for robot, row in self._row.items()
-            if self._present[robot]
-        ]
+    def _scene(self) -> Scene:
+        return Scene(
+            self.tick,
+            self.time_ns,
+            self._presences(),
+            self._statuses,
+            self._faults.released,
+            self._collisions,
+        )

@@ -16,6 +16,9 @@ class DirectRouter:
         if not self._host.send(data, message.destination, message.msdu_bytes, "", now):
             self._host.drop(data, Fate.QUEUE_FULL)
 
+    def abandon(self) -> list[Data]:
+        return []
+
     def on_packet(self, packet: object, sender: int, now: int) -> None:  # noqa: ARG002
         assert isinstance(packet, Data)
         self._host.deliver(packet, now)

@@ -11,6 +11,7 @@ class Host(Protocol):
     """What the card of one robot lets its routing protocol do."""
 
     robot: int
+    incarnation: int
 
     def send(self, packet: object, next_hop: int, size_bytes: int, kind: str, now: int) -> bool:
         """Queue a packet for one hop (BROADCAST for all); False when the queue is full.
@@ -49,6 +50,10 @@ class Router(Protocol):
 
     def submit(self, data: Data, now: int) -> None:
         """The robot itself has a message for another."""
+        ...
+
+    def abandon(self) -> list[Data]:
+        """The robot leaves: the messages that still wait for a route."""
         ...
 
     def on_packet(self, packet: object, sender: int, now: int) -> None:

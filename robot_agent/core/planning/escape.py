@@ -21,7 +21,7 @@ from robot_agent.core.planning.memory import CLOSED, OPENING, PLACE, WayPoints
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
 from robot_agent.core.planning.survey import Survey
-from robot_agent.core.planning.view import NO_POINTS, Afterimage, View, squared_distances
+from robot_agent.core.planning.view import NO_POINTS, Afterimage, BoolArray, View, squared_distances
 from robot_agent.core.scan import Fan, FloatArray
 
 GOAL = -2
@@ -51,6 +51,7 @@ class Escape:
         self.tries = 0
         self.planned: Pose | None = None
         self.remaining = math.dist((pose.x, pose.y), self.goal)
+        self.record = self.remaining
         self.passage = math.inf
         self.waypoint = (pose.x, pose.y)
         self.notes: list[Note] = []
@@ -80,7 +81,7 @@ class Escape:
                 return True
         moved = math.dist((pose.x, pose.y), (last.x, last.y))
         turned = abs(wrap_angle(pose.heading - last.heading))
-        if moved >= 2.0 * self.section.inflation or turned > math.pi / 4:
+        if moved >= 3.0 * self.section.inflation or turned > math.pi / 4:
             return True
         return self.turn is None and math.dist((pose.x, pose.y), self.driver.way[-1]) < 0.1
 
@@ -91,6 +92,7 @@ class Escape:
 
     def _plan(self, pose: Pose, scan: Ranges, moving: frozenset[int]) -> None:
         self.planned = pose
+        self.record = min(self.record, math.dist((pose.x, pose.y), self.goal))
         self.driver.shielded = 0
         half_view = float(self.fan.angles[-1])
         beside = self.afterimage.beside(pose, half_view)
@@ -129,7 +131,7 @@ class Escape:
         memory = self.memory
         nearest, distance = memory.nearest(pose.x, pose.y, PLACE)
         before = self.place
-        if nearest == NOTHING or (distance > 1.2 * self.spacing and not memory.full):
+        if nearest == NOTHING or (distance > 1.2 * self.spacing and memory.has_room):
             self.place = memory.add(pose.x, pose.y, PLACE)
             if before == NOTHING:
                 self._note_rear(pose)
@@ -156,21 +158,33 @@ class Escape:
             np.isfinite(costs) & (near_rim.min(axis=1, initial=np.inf) < self.rim**2)
         )
         candidates = candidates[candidates > 0]
-        taken = self.memory.xy[: self.memory.count]
-        apart = squared_distances(roadmap.points[candidates], taken).min(axis=1, initial=np.inf)
-        candidates = candidates[apart >= self.spacing**2]
+        candidates = candidates[self._apart(roadmap.points[candidates])]
         value = costs[candidates] + np.hypot(*(roadmap.points[candidates] - self.goal).T)
         offset = math.dist(view.origin, self.memory.xy[self.place])
         fresh: list[int] = []
         for point in candidates[np.argsort(value, kind="stable")].tolist():
             here = roadmap.points[point]
-            if self.memory.full:
+            if not self.memory.has_room:
                 break
             if all(math.dist(here, roadmap.points[p]) >= self.spacing for p in fresh):
                 fresh.append(point)
                 number = self.memory.add(float(here[0]), float(here[1]), OPENING)
                 self.gaze[number] = outward[int(np.argmin(near_rim[point]))]
                 self.memory.join(self.place, number, float(costs[point]) + offset)
+
+    def _apart(self, points: FloatArray) -> BoolArray:
+        """Which (n, 2) points are worth a new opening: far enough from openings, and either closer to the
+        goal than the robot ever was, or far enough from places and closed openings.
+        """
+        nearest = {
+            kind: squared_distances(points, self.memory.xy[self.memory.of_kind(kind)]).min(
+                axis=1, initial=np.inf
+            )
+            for kind in (PLACE, OPENING, CLOSED)
+        }
+        progress = np.hypot(*(points - self.goal).T) < self.record - self.section.inflation
+        new = (nearest[PLACE] >= self.spacing**2) & (nearest[CLOSED] >= 0.25 * self.spacing**2)
+        return (nearest[OPENING] >= self.spacing**2) & (new | progress)
 
     def _refute(self, view: View, rim: FloatArray, known: list[int]) -> None:
         """Openings in full view that have nothing unseen around them any more are closed."""
@@ -179,10 +193,11 @@ class Escape:
             return
         points = self.memory.xy[openings]
         beside_unseen = squared_distances(points, rim).min(axis=1, initial=np.inf) < self.rim**2
-        still = beside_unseen & view.free(points, self.clearance)
+        still = beside_unseen & view.free(points, self.clearance)[0]
         at_rear = np.abs(wrap_angles(self.gaze[openings] - view.pose.heading)) > 1.2
         at_rear &= np.hypot(*(points - view.origin).T) < 1.5 * self.spacing
-        self.memory.kind[openings[~still & ~at_rear]] = CLOSED
+        for number in openings[~still & ~at_rear].tolist():
+            self.memory.close(number)
 
     def _choose(self, pose: Pose, roadmap: RoadMap, reach: dict[int, tuple[int, float]]) -> bool:
         """The opening with the least g + h becomes the target, and the way towards it is taken.
@@ -233,7 +248,7 @@ class Escape:
         for number in memory.of_kind(OPENING).tolist():
             near = math.dist((pose.x, pose.y), memory.xy[number]) < 1.0 * self.section.inflation
             if near and abs(wrap_angle(float(self.gaze[number]) - pose.heading)) < 1.0:
-                memory.kind[number] = CLOSED
+                memory.close(number)
 
     def _go(
         self, pose: Pose, roadmap: RoadMap, chain: list[int], reach: dict[int, tuple[int, float]]
@@ -267,7 +282,7 @@ class Escape:
         """The next piece of the route cannot be driven: forget it."""
         self.tries = 0
         if len(ahead) == 1:
-            self.memory.kind[ahead[0]] = CLOSED
+            self.memory.close(ahead[0])
         else:
             self.memory.part(ahead[-1], ahead[-2])
 
@@ -299,13 +314,13 @@ def _unseen_rim(view: View, gap: float) -> tuple[FloatArray, FloatArray]:
     """
     sight, open_beams = view.sight, view.open_beams
     heading = view.fan.angles + view.pose.heading
-    far = np.flatnonzero(open_beams)[::2]
+    far = np.flatnonzero(open_beams)[::4]
     points = [view.origin + view.directions[far] * sight[far, None]]
     outward = [heading[far]]
     for beam in np.flatnonzero(np.abs(np.diff(sight)) > gap).tolist():
         left_is_far = sight[beam + 1] > sight[beam]
         near, long = (beam, beam + 1) if left_is_far else (beam + 1, beam)
-        radius = np.arange(sight[near] + 0.25 * gap, sight[long], 0.5 * gap)
+        radius = np.arange(sight[near] + 0.25 * gap, sight[long], 0.7 * gap)
         points.append(view.origin + view.directions[long] * radius[:, None])
         outward.append(
             np.full(len(radius), heading[long] + (-math.pi / 2 if left_is_far else math.pi / 2))

@@ -9,9 +9,12 @@ import heapq
 import math
 
 import numpy as np
+import numpy.typing as npt
 
 from robot_agent.core.planning.view import squared_distances
 from robot_agent.core.scan import FloatArray
+
+Indices = npt.NDArray[np.intp]
 
 PLACE, OPENING, CLOSED = 1, 2, 3
 DEGREE = 8
@@ -26,27 +29,43 @@ class WayPoints:
         self.count = 0
         self.xy: FloatArray = np.zeros((capacity, 2))
         self.kind = np.zeros(capacity, dtype=np.uint8)
+        self._closed = 0
+        self._closed_as = np.zeros(capacity, dtype=np.int64)
         self._peer = np.full((capacity, DEGREE), -1, dtype=np.int32)
         self._length = np.full((capacity, DEGREE), np.inf)
 
     @property
     def nbytes(self) -> int:
         """Bytes that the memory takes, full or empty."""
-        return int(sum(a.nbytes for a in (self.xy, self.kind, self._peer, self._length)))
+        arrays = (self.xy, self.kind, self._closed_as, self._peer, self._length)
+        return int(sum(array.nbytes for array in arrays))
 
     @property
-    def full(self) -> bool:
-        return self.count == self.capacity
+    def has_room(self) -> bool:
+        """Can another way point be remembered, if need be in the place of a closed one?"""
+        return self.count < self.capacity or bool((self.kind == CLOSED).any())
 
     def add(self, x: float, y: float, kind: int) -> int:
-        """Remember a way point and say its number; the caller has made sure that there is room."""
+        """Remember a way point and say its number; there must be room. The oldest closed one goes first."""
         number = self.count
-        self.count += 1
+        if self.count < self.capacity:
+            self.count += 1
+        else:
+            closed = self.of_kind(CLOSED)
+            number = int(closed[np.argmin(self._closed_as[closed])])
         self.xy[number] = x, y
         self.kind[number] = kind
         return number
 
-    def of_kind(self, *kinds: int) -> FloatArray:
+    def close(self, number: int) -> None:
+        """An opening that leads nowhere new; its edges are forgotten."""
+        self.kind[number] = CLOSED
+        self._closed += 1
+        self._closed_as[number] = self._closed
+        for peer in self._peer[number][self._peer[number] >= 0].tolist():
+            self.part(number, peer)
+
+    def of_kind(self, *kinds: int) -> Indices:
         """Numbers of the way points of these kinds, ascending."""
         return np.flatnonzero(np.isin(self.kind[: self.count], kinds))
 

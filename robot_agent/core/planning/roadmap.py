@@ -15,7 +15,7 @@ from robot_agent.core.scan import FloatArray
 
 Indices = npt.NDArray[np.intp]
 
-NEIGHBOURS = 8
+NEIGHBOURS = 6
 """Edges tried from each point, to the nearest others; more cost time and shorten nothing visibly."""
 
 DISCOMFORT = 2.0
@@ -56,9 +56,10 @@ class RoadMap:
         self.comfort = comfort
         candidates = np.concatenate((extras, samples))
         marks = np.concatenate((np.arange(len(extras)), np.full(len(samples), -1)))
-        good = view.free(candidates, clearance) & view.visible(candidates)
+        free, room = view.free(candidates, clearance)
+        good = free & view.visible(candidates)
         self.points: FloatArray = np.concatenate((view.origin[None], candidates[good]))
-        self.room: FloatArray = view.clearance(self.points)
+        self.room: FloatArray = np.concatenate((view.free(view.origin[None], clearance)[1], room[good]))
         self.marks: Indices = np.concatenate(([-1], marks[good])).astype(np.intp)
         self._join()
 
@@ -72,11 +73,10 @@ class RoadMap:
             self.neighbours: Indices = np.empty((n, 0), dtype=np.intp)
             self.lengths: FloatArray = np.empty((n, 0))
             return
-        near = np.argpartition(distance2, k - 1, axis=1)[:, :k]
-        a = np.concatenate((np.repeat(np.arange(n), k), np.zeros(n - 1, dtype=np.intp)))
-        b = np.concatenate((near.ravel(), np.arange(1, n)))
-        pairs = np.unique(np.minimum(a, b) * n + np.maximum(a, b))
-        a, b = pairs // n, pairs % n
+        reach = np.partition(distance2, k - 1, axis=1)[:, k - 1]
+        joined = distance2 <= np.maximum(reach[:, None], reach)
+        joined[0, 1:] = True
+        a, b = np.nonzero(np.triu(joined, 1))
         clear, wide = self._clear(a, b)
         length = np.sqrt(distance2[a, b]) * np.where(wide, 1.0, DISCOMFORT)
         self._store(a[clear], b[clear], length[clear])

@@ -1,0 +1,136 @@
+"""What theory says of saturated stations: Bianchi's DCF model, and one link under fading.
+
+G. Bianchi, "Performance analysis of the IEEE 802.11 distributed coordination function", IEEE JSAC 18(3),
+2000, eq. 7 to 17. The fading forms follow radio.md. They are what the event simulation is held against.
+"""
+
+import math
+
+from onehop.contracts.airtime import ACK_BYTES, RTS_BYTES
+from radio_proxy.core.airtime import Timing
+from radio_proxy.core.error_rates import frame_success
+from radio_proxy.core.propagation import LinkBudget
+
+
+def bianchi_tau(stations: int, window: int, stages: int) -> tuple[float, float]:
+    """Probabilities that a station speaks in a slot, and that it then collides (eq. 7 and 9).
+
+    window: W, the first window's size in slots. stages: m, how often it doubles.
+    """
+
+    def speaks(p: float) -> float:
+        doubled = sum((2.0 * p) ** i for i in range(stages))
+        return 2.0 / (1.0 + window + p * window * doubled)
+
+    low, high = 0.0, 1.0
+    for _ in range(200):
+        p = (low + high) / 2.0
+        if 1.0 - (1.0 - speaks(p)) ** (stations - 1) > p:
+            low = p
+        else:
+            high = p
+    return speaks(low), low
+
+
+def bianchi_normalized(
+    stations: int, timing: Timing, msdu_bytes: int, rts_cts: bool, propagation: int = 0
+) -> float:
+    """Share of time that carries payload bits in one saturated cell (eq. 13). propagation [ns]."""
+    window = timing.cw_min + 1
+    stages = round(math.log2((timing.cw_max + 1) / window))
+    tau, _ = bianchi_tau(stations, window, stages)
+    some = 1.0 - (1.0 - tau) ** stations
+    one = stations * tau * (1.0 - tau) ** (stations - 1)
+    payload = 8000.0 * msdu_bytes / timing.rate_mbps
+    data = timing.data(msdu_bytes)
+    success = data + timing.sifs + timing.ack + timing.difs + 2 * propagation
+    collision = data + timing.difs + propagation
+    if rts_cts:
+        success += timing.rts + timing.cts + 2 * timing.sifs + 2 * propagation
+        collision = timing.rts + timing.difs + propagation
+    time = (1.0 - some) * timing.slot + one * success + (some - one) * collision
+    return one * payload / time
+
+
+def frame_probability(budget: LinkBudget, snr_db: float, rate_mbps: float, size_bytes: int) -> float:
+    """P(a frame gets through) at a mean SNR, over the fading: threshold and bit errors."""
+    if budget.shadowing_db == 0.0:
+        through = frame_success(rate_mbps, snr_db, 8 * size_bytes)
+        return through if snr_db >= budget.receive_threshold_db else 0.0
+    steps, span = 2000, 8.0
+    total = weight = 0.0
+    for k in range(steps):
+        z = -span + (k + 0.5) * 2.0 * span / steps
+        density = math.exp(-0.5 * z * z)
+        weight += density
+        faded = snr_db + budget.shadowing_db * z
+        if faded >= budget.receive_threshold_db:
+            total += density * frame_success(rate_mbps, faded, 8 * size_bytes)
+    return total / weight
+
+
+def threshold_probability(budget: LinkBudget, snr_db: float) -> float:
+    """P(one frame reaches the receive threshold) at a mean SNR."""
+    if budget.shadowing_db == 0.0:
+        return 1.0 if snr_db >= budget.receive_threshold_db else 0.0
+    margin = (snr_db - budget.receive_threshold_db) / budget.shadowing_db
+    return 0.5 * math.erfc(-margin / math.sqrt(2.0))
+
+
+class SaturatedLink:
+    """One sender that always has a message, alone on the air, behind a lossy link (radio.md)."""
+
+    def __init__(self, timing: Timing, msdu_bytes: int, retry_limit: int, rts_cts: bool = True) -> None:
+        self._timing = timing
+        self._bits = 8 * msdu_bytes
+        self._data = timing.data(msdu_bytes)
+        self._limit = retry_limit
+        self._rts_cts = rts_cts
+
+    def _backoff_us(self, failures: int) -> float:
+        return self._timing.window(failures) * self._timing.slot / 2000.0
+
+    def _times_us(self) -> tuple[float, float, float]:
+        """Costs of an attempt: RTS unanswered, data unanswered, all of it [us]."""
+        t = self._timing
+        before = t.rts + t.cts + 2 * t.sifs if self._rts_cts else 0
+        lost_rts = t.rts + t.answer_timeout
+        lost_data = before + self._data + t.answer_timeout
+        whole = before + self._data + t.sifs + t.ack
+        return lost_rts / 1000.0, lost_data / 1000.0, whole / 1000.0
+
+    def one_draw_per_exchange(self, p: float) -> tuple[float, float, float]:
+        """Delivery ratio, throughput [Mb/s] and mean delay of a delivered message [us].
+
+        p: probability that an exchange gets through; its first frame decides it.
+        """
+        lost_rts, lost_data, whole = self._times_us()
+        lost = lost_rts if self._rts_cts else lost_data
+        q = 1.0 - p
+        difs = self._timing.difs / 1000.0
+        spent = delay = passed = 0.0
+        for i in range(self._limit):
+            wait = difs + self._backoff_us(i)
+            delay += q**i * p * (passed + wait + whole)
+            spent += q**i * (wait + p * whole + q * lost)
+            passed += wait + lost
+        ratio = 1.0 - q**self._limit
+        return ratio, ratio * self._bits / spent, delay / ratio if ratio else math.inf
+
+    def one_draw_per_frame(self, rts: float, cts: float, data: float, ack: float) -> tuple[float, float]:
+        """Delivery ratio and throughput [Mb/s], with each frame's own probability to get through."""
+        lost_rts, lost_data, whole = self._times_us()
+        begun = rts * cts if self._rts_cts else 1.0
+        heard = begun * data
+        done = heard * ack
+        spent = 0.0
+        for i in range(self._limit):
+            mean = (1.0 - begun) * lost_rts + (begun - done) * lost_data + done * whole
+            spent += (1.0 - done) ** i * (self._timing.difs / 1000.0 + self._backoff_us(i) + mean)
+        ratio = 1.0 - (1.0 - heard) ** self._limit
+        return ratio, ratio * self._bits / spent
+
+
+def sizes_bytes(timing: Timing, msdu_bytes: int) -> tuple[int, int, int, int]:
+    """Sizes of RTS, CTS, data and ACK with their headers [B]."""
+    return RTS_BYTES, ACK_BYTES, timing.mac_header_bytes + msdu_bytes, ACK_BYTES

@@ -1,0 +1,324 @@
+"""MRDV: AODV (RFC 3561) whose ROUTE REQUESTs are passed on with a probability (thesis 3.7.2).
+
+Left out, as the RFC allows: hello messages (6.9, the link layer's feedback is used), local repair
+(6.12), RREP-ACK (6.8: the link layer acknowledges every unicast RREP).
+
+Differs: the probability holds during the expanding ring search alone; requests through the whole net are
+normal ones, because waiting for three of them (20 s) before the normal discovery would outlast the team.
+After a restart a robot asks for answers of the destination alone (6.3, flag D) for DELETE_PERIOD instead
+of keeping silent so long (6.13). Requests are jittered before they are passed on (as RFC 4728 does).
+"""
+
+from collections import deque
+from dataclasses import dataclass, field, replace
+
+from onehop.contracts.messages import BROADCAST, Fate
+from radio_proxy.core.message import SEARCHES, Data
+from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
+from radio_proxy.core.routing.interface import Host
+from radio_proxy.core.routing.mrdv_packets import RREP_BYTES, RREQ_BYTES, Rerr, Rrep, Rreq, rerr_bytes
+from radio_proxy.core.routing.mrdv_table import ACTIVE_ROUTE_NS, DELETE_PERIOD_NS, MS, Route, RouteTable
+from radio_proxy.core.routing.sequence import following, freshest, newer
+
+NODE_TRAVERSAL_NS = 40 * MS
+NET_DIAMETER = 35
+NET_TRAVERSAL_NS = 2 * NODE_TRAVERSAL_NS * NET_DIAMETER
+PATH_DISCOVERY_NS = 2 * NET_TRAVERSAL_NS
+MY_ROUTE_NS = 2 * ACTIVE_ROUTE_NS
+TTL_START, TTL_INCREMENT, TTL_THRESHOLD = 1, 2, 7
+TIMEOUT_BUFFER = 2
+RREQ_RETRIES = 2
+RATE_LIMIT = 10
+SECOND_NS = 1000 * MS
+"""Timers and limits of RFC 3561, section 10."""
+
+BUFFER_MESSAGES = 64
+"""Messages that wait for routes; the newest is dropped when it is full (size of RFC 4728, 4.2)."""
+
+
+@dataclass(slots=True, eq=False)
+class Search:
+    """A discovery under way. network_wide: requests sent through the whole net so far."""
+
+    destination: int
+    ttl: int
+    network_wide: int = 0
+    number: int = 0
+    waiting: list[Data] = field(default_factory=list)
+
+
+class MrdvRouter:
+    """AODV on one robot."""
+
+    def __init__(self, host: Host, gamma_distance: float, now: int) -> None:
+        self.table = RouteTable()
+        self._host = host
+        self._me = host.robot
+        self._gamma_distance = gamma_distance
+        self._sequence = host.incarnation << 16
+        self._number = host.incarnation << 16
+        self._cautious_until = now + DELETE_PERIOD_NS if host.incarnation else now
+        self._searches: dict[int, Search] = {}
+        self._buffered = 0
+        self._seen: dict[tuple[int, int], int] = {}
+        self._requests: deque[int] = deque()
+        self._errors: deque[int] = deque()
+        self._blacklist: dict[int, int] = {}
+
+    def submit(self, data: Data, now: int) -> None:
+        if data.message.destination in self._searches or not self._forward(data, now):
+            self._wait(data, now)
+
+    def abandon(self) -> list[Data]:
+        waiting = [data for to in sorted(self._searches) for data in self._searches[to].waiting]
+        self._searches.clear()
+        return waiting
+
+    def on_packet(self, packet: object, sender: int, now: int) -> None:
+        if isinstance(packet, Data):
+            self._on_data(packet, sender, now)
+        elif isinstance(packet, Rreq):
+            self._on_rreq(packet, sender, now)
+        elif isinstance(packet, Rrep):
+            self._on_rrep(packet, sender, now)
+        elif isinstance(packet, Rerr):
+            self._report(self.table.heed_error(sender, packet.lost, now), now)
+        self._flush(sender, now)
+
+    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:  # noqa: ARG002
+        self.table.refresh(next_hop, now)
+
+    def on_undeliverable(self, packet: object, next_hop: int, cause: Fate, now: int) -> None:
+        """Link-layer feedback: the neighbour is gone (RFC 3561, 6.10 and 6.11 case i)."""
+        self._report(self.table.break_link(next_hop, now), now)
+        if isinstance(packet, Rrep):
+            self._blacklist[next_hop] = now + RREQ_RETRIES * NET_TRAVERSAL_NS
+        if not isinstance(packet, Data):
+            return
+        if packet.message.source == self._me and packet.message.searches < SEARCHES:
+            self.submit(replace(packet, attempts=()), now)
+        else:
+            self._host.drop(packet, cause)
+
+    # Data.
+
+    def _on_data(self, data: Data, sender: int, now: int) -> None:
+        self.table.meet(sender, now)
+        self.table.refresh(data.message.source, now)
+        if data.message.destination == self._me:
+            self._host.deliver(data, now)
+        elif not self._forward(data, now):
+            route = self.table.entry(data.message.destination, now)
+            sequence = route.sequence if route is not None else 0
+            self._send_rerr(((data.message.destination, sequence),), (sender,), now)
+            self._host.drop(data, Fate.NO_ROUTE)
+
+    def _forward(self, data: Data, now: int) -> bool:
+        """Send a message along its route; False when there is none."""
+        message = data.message
+        route = self.table.usable(message.destination, now)
+        if route is None or len(data.path) > NET_DIAMETER:
+            return False
+        self.table.refresh(message.destination, now)
+        self.table.refresh(route.next_hop, now)
+        if not self._host.send(data, route.next_hop, message.msdu_bytes, "", now):
+            self._host.drop(data, Fate.QUEUE_FULL)
+        return True
+
+    # Discovery by the origin.
+
+    def _wait(self, data: Data, now: int) -> None:
+        if self._buffered >= BUFFER_MESSAGES:
+            self._host.drop(data, Fate.QUEUE_FULL)
+            return
+        self._buffered += 1
+        destination = data.message.destination
+        data.message.begin_search(now)
+        search = self._searches.get(destination)
+        if search is not None:
+            search.waiting.append(data)
+            return
+        known = self.table.entry(destination, now)
+        ttl = TTL_START if known is None else min(known.hops + TTL_INCREMENT, TTL_THRESHOLD)
+        search = self._searches[destination] = Search(destination, ttl, waiting=[data])
+        self._ask(search, now)
+
+    def _ask(self, search: Search, now: int) -> None:
+        """Send the search's next request, or wait for the rate limit (RFC 3561, 6.3 and 6.4)."""
+        if self._searches.get(search.destination) is not search:
+            return
+        wait_until = self._within_rate(self._requests, now)
+        if wait_until > now:
+            self._host.at(wait_until, self._ask, search)
+            return
+        self._number += 1
+        search.number = self._number
+        self._sequence = following(self._sequence)
+        known = self.table.entry(search.destination, now)
+        request = Rreq(
+            origin=self._me,
+            origin_sequence=self._sequence,
+            number=self._number,
+            destination=search.destination,
+            sequence=known.sequence if known is not None and known.sequence_known else None,
+            hops=0,
+            ttl=search.ttl,
+            normal=search.ttl > TTL_THRESHOLD,
+            destination_only=now < self._cautious_until,
+        )
+        self._see(request, now)
+        self._host.send(request, BROADCAST, RREQ_BYTES, "rreq", now)
+        if search.ttl > TTL_THRESHOLD:
+            patience = NET_TRAVERSAL_NS << search.network_wide
+            search.network_wide += 1
+        else:
+            patience = 2 * NODE_TRAVERSAL_NS * (search.ttl + TIMEOUT_BUFFER)
+        self._host.at(now + patience, self._on_no_answer, (search, search.number))
+
+    def _on_no_answer(self, asked: tuple[Search, int], now: int) -> None:
+        search, number = asked
+        if self._searches.get(search.destination) is not search or search.number != number:
+            return
+        if search.network_wide > RREQ_RETRIES:
+            for data in self._end_search(search, now):
+                self._host.drop(data, Fate.NO_ROUTE)
+            return
+        search.ttl += TTL_INCREMENT
+        if search.ttl > TTL_THRESHOLD:
+            search.ttl = NET_DIAMETER
+        self._ask(search, now)
+
+    def _end_search(self, search: Search, now: int) -> list[Data]:
+        del self._searches[search.destination]
+        self._buffered -= len(search.waiting)
+        for data in search.waiting:
+            data.message.end_search(now)
+        return search.waiting
+
+    def _within_rate(self, sent: deque[int], now: int) -> int:
+        """When one more may be sent: now (then it counts), or later (RREQ_ and RERR_RATELIMIT)."""
+        while sent and sent[0] <= now - SECOND_NS:
+            sent.popleft()
+        if len(sent) >= RATE_LIMIT:
+            return sent[0] + SECOND_NS
+        sent.append(now)
+        return now
+
+    # Requests, replies and errors of others.
+
+    def _see(self, request: Rreq, now: int) -> bool:
+        """Whether a request is seen for the first time in PATH_DISCOVERY_TIME (RFC 3561, 6.5)."""
+        while self._seen and next(iter(self._seen.values())) <= now:
+            del self._seen[next(iter(self._seen))]
+        key = (request.origin, request.number)
+        if key in self._seen:
+            return False
+        self._seen[key] = now + PATH_DISCOVERY_NS
+        return True
+
+    def _on_rreq(self, request: Rreq, sender: int, now: int) -> None:
+        if request.origin == self._me or self._blacklist.get(sender, now) > now:
+            return
+        self.table.meet(sender, now)
+        if not self._see(request, now):
+            return
+        hops = request.hops + 1
+        lifetime = 2 * NET_TRAVERSAL_NS - 2 * hops * NODE_TRAVERSAL_NS
+        self.table.offer(request.origin, sender, hops, request.origin_sequence, now + lifetime, now)
+        if request.destination == self._me:
+            if request.sequence is not None:
+                self._sequence = freshest(self._sequence, request.sequence)
+            self._reply(Rrep(request.origin, self._me, self._sequence, 0, MY_ROUTE_NS), now)
+            self._flush(request.origin, now)
+            return
+        route = self.table.usable(request.destination, now)
+        if route is not None and self._may_answer(request, route, now):
+            self._answer_for(request, route, sender, now)
+        elif request.ttl > 1:
+            self._pass_on(request, hops, now)
+        self._flush(request.origin, now)
+
+    def _may_answer(self, request: Rreq, route: Route, now: int) -> bool:
+        """Whether a route in the table is fresh enough to answer with (RFC 3561, 6.6)."""
+        if request.destination_only or now < self._cautious_until or not route.sequence_known:
+            return False
+        return request.sequence is None or not newer(request.sequence, route.sequence)
+
+    def _answer_for(self, request: Rreq, route: Route, sender: int, now: int) -> None:
+        """Answer for the destination, and tell it of the origin (RFC 3561, 6.6.2 and 6.6.3)."""
+        route.add_precursor(sender)
+        back = self.table.usable(request.origin, now)
+        if back is not None:
+            back.add_precursor(route.next_hop)
+            known = Rrep(route.destination, request.origin, back.sequence, back.hops, back.expires - now)
+            self._host.send(known, route.next_hop, RREP_BYTES, "rrep", now)
+        lifetime = route.expires - now
+        self._reply(Rrep(request.origin, route.destination, route.sequence, route.hops, lifetime), now)
+
+    def _pass_on(self, request: Rreq, hops: int, now: int) -> None:
+        if not request.normal:
+            weight = gamma(self._host.remaining_distance(), self._gamma_distance)
+            if self._host.uniform() >= forwarding_probability(self._host.speed(), weight):
+                return
+        sequence = request.sequence
+        known = self.table.entry(request.destination, now)
+        if known is not None and known.sequence_known:
+            sequence = known.sequence if sequence is None else freshest(sequence, known.sequence)
+        onward = replace(
+            request,
+            hops=hops,
+            ttl=request.ttl - 1,
+            sequence=sequence,
+            destination_only=request.destination_only or now < self._cautious_until,
+        )
+        jitter = round(self._host.uniform() * BROADCAST_JITTER_NS)
+        self._host.at(now + jitter, self._send_rreq, onward)
+
+    def _send_rreq(self, request: Rreq, now: int) -> None:
+        self._host.send(request, BROADCAST, RREQ_BYTES, "rreq", now)
+
+    def _reply(self, reply: Rrep, now: int) -> None:
+        """Send a reply one hop back towards the origin of its request."""
+        back = self.table.usable(reply.origin, now)
+        if back is not None:
+            self._host.send(reply, back.next_hop, RREP_BYTES, "rrep", now)
+
+    def _on_rrep(self, reply: Rrep, sender: int, now: int) -> None:
+        self.table.meet(sender, now)
+        hops = reply.hops + 1
+        taken = reply.destination != self._me and self.table.offer(
+            reply.destination, sender, hops, reply.sequence, now + reply.lifetime, now
+        )
+        if taken and reply.origin != self._me:
+            forward = self.table.usable(reply.destination, now)
+            back = self.table.usable(reply.origin, now)
+            if forward is not None and back is not None:
+                forward.add_precursor(back.next_hop)
+                back.add_precursor(forward.next_hop)
+                back.expires = max(back.expires, now + ACTIVE_ROUTE_NS)
+                self._host.send(replace(reply, hops=hops), back.next_hop, RREP_BYTES, "rrep", now)
+        self._flush(reply.destination, now)
+
+    def _flush(self, destination: int, now: int) -> None:
+        """Send what waited for a route that is there now."""
+        search = self._searches.get(destination)
+        if search is not None and self.table.usable(destination, now) is not None:
+            for data in self._end_search(search, now):
+                self.submit(data, now)
+
+    def _report(self, broken: list[Route], now: int) -> None:
+        """Tell the precursors of routes that died (RFC 3561, 6.11)."""
+        told = [route for route in broken if route.precursors]
+        listeners = tuple(sorted({robot for route in told for robot in route.precursors}))
+        if told:
+            self._send_rerr(tuple((r.destination, r.sequence) for r in told), listeners, now)
+        for route in broken:
+            route.precursors.clear()
+
+    def _send_rerr(
+        self, lost: tuple[tuple[int, int], ...], listeners: tuple[int, ...], now: int
+    ) -> None:
+        if self._within_rate(self._errors, now) > now:
+            return
+        target = listeners[0] if len(listeners) == 1 else BROADCAST
+        self._host.send(Rerr(lost), target, rerr_bytes(len(lost)), "rerr", now)

@@ -1,0 +1,48 @@
+"""Control packets of AODV with their sizes on the air (RFC 3561, section 5; 28 B of IP and UDP)."""
+
+from dataclasses import dataclass
+
+IP_UDP_BYTES = 28
+RREQ_BYTES = 24 + IP_UDP_BYTES
+RREP_BYTES = 20 + IP_UDP_BYTES
+
+
+def rerr_bytes(destinations: int) -> int:
+    """Size of a ROUTE ERROR that names so many destinations [B]."""
+    return 4 + 8 * destinations + IP_UDP_BYTES
+
+
+@dataclass(frozen=True, slots=True)
+class Rreq:
+    """ROUTE REQUEST. sequence: last known of the destination, None for unknown.
+
+    normal: pass on without MRDV's probability. destination_only: nobody may answer from its table.
+    """
+
+    origin: int
+    origin_sequence: int
+    number: int
+    destination: int
+    sequence: int | None
+    hops: int
+    ttl: int
+    normal: bool
+    destination_only: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Rrep:
+    """ROUTE REPLY on its way to `origin`: its sender is `hops` from destination; lifetime [ns]."""
+
+    origin: int
+    destination: int
+    sequence: int
+    hops: int
+    lifetime: int
+
+
+@dataclass(frozen=True, slots=True)
+class Rerr:
+    """ROUTE ERROR: (destination, sequence) of everything that its sender cannot reach any more."""
+
+    lost: tuple[tuple[int, int], ...]

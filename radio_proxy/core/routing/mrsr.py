@@ -1,0 +1,250 @@
+"""MRSR: DSR (RFC 4728) whose ROUTE REQUESTs are passed on with a probability (thesis 3.7.2).
+
+Left out, as the RFC allows: flow state, promiscuous listening and what builds on it (route shortening,
+gratuitous replies, giving up a reply that another robot has made needless), piggybacking. Route
+maintenance is the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
+
+Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
+flag for normal forwarding. At the origin itself a message is searched for twice at most.
+"""
+
+from collections import deque
+from dataclasses import dataclass, field, replace
+
+from onehop.contracts.messages import BROADCAST, Fate
+from radio_proxy.core.message import SEARCHES, Data
+from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
+from radio_proxy.core.routing.interface import Host
+from radio_proxy.core.routing.mrsr_cache import RouteCache
+from radio_proxy.core.routing.mrsr_packets import (
+    Rerr,
+    Rrep,
+    Rreq,
+    after,
+    source_route_bytes,
+    without_loops,
+)
+
+MS = 1_000_000
+NONPROPAGATING_NS = 30 * MS
+REQUEST_PERIOD_NS = 500 * MS
+MAX_REQUEST_PERIOD_NS = 10_000 * MS
+MAX_REQUESTS = 16
+REQUEST_IDS = 16
+HOP_LIMIT = 255
+SEND_BUFFER = 64
+SEND_BUFFER_TIMEOUT_NS = 30_000 * MS
+MAX_SALVAGE = 15
+BLACKLIST_NS = 5000 * MS
+"""Timers and limits of RFC 4728, section 9 (the blacklist's is left to the implementation there)."""
+
+
+@dataclass(slots=True, eq=False)
+class Search:
+    """A discovery under way. sent: requests so far."""
+
+    target: int
+    sent: int = 0
+    waiting: list[Data] = field(default_factory=list)
+
+
+class MrsrRouter:
+    """DSR on one robot."""
+
+    def __init__(self, host: Host, gamma_distance: float) -> None:
+        self.cache = RouteCache(host.robot)
+        self._host = host
+        self._me = host.robot
+        self._gamma_distance = gamma_distance
+        self._number = host.incarnation << 16
+        self._searches: dict[int, Search] = {}
+        self._buffered = 0
+        self._seen: dict[int, deque[tuple[int, int]]] = {}
+        self._blacklist: dict[int, int] = {}
+
+    def submit(self, data: Data, now: int) -> None:
+        if data.message.destination in self._searches or not self._send_along_cache(data, now):
+            self._wait(data, now)
+
+    def abandon(self) -> list[Data]:
+        waiting = [data for target in sorted(self._searches) for data in self._searches[target].waiting]
+        self._searches.clear()
+        return waiting
+
+    def on_packet(self, packet: object, sender: int, now: int) -> None:
+        if isinstance(packet, Data):
+            self._on_data(packet, now)
+        elif isinstance(packet, Rreq):
+            self._on_rreq(packet, sender, now)
+        elif isinstance(packet, Rrep):
+            self._on_rrep(packet, now)
+        elif isinstance(packet, Rerr):
+            self.cache.forget_link(packet.a, packet.b)
+            if packet.back[-1] != self._me:
+                self._host.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
+
+    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
+        """A confirmed link needs no mark: a path holds until it fails or is too old."""
+
+    def on_undeliverable(self, packet: object, next_hop: int, cause: Fate, now: int) -> None:
+        """The link is broken: forget it, tell the source, salvage (RFC 4728, 8.3.4 and 8.3.6)."""
+        self.cache.forget_link(self._me, next_hop)
+        if isinstance(packet, Rrep):
+            self._blacklist[next_hop] = now + BLACKLIST_NS
+        if not isinstance(packet, Data):
+            return
+        at_origin = packet.message.source == self._me
+        if not at_origin:
+            back = without_loops(packet.path)[::-1]
+            error = Rerr(self._me, next_hop, back)
+            if len(back) > 1:
+                self._host.send(error, back[1], error.size_bytes, "rerr", now)
+        again = replace(packet, attempts=packet.attempts[:-1], salvaged=packet.salvaged + 1)
+        if again.salvaged <= MAX_SALVAGE and self._send_along_cache(again, now):
+            return
+        if at_origin and packet.message.searches < SEARCHES:
+            self._wait(again, now)
+        else:
+            self._host.drop(packet, cause)
+
+    # Data.
+
+    def _send_along_cache(self, data: Data, now: int) -> bool:
+        """Give a message a source route out of the cache; False when there is none."""
+        route = self.cache.find(data.message.destination, now)
+        if route is None:
+            return False
+        self._send_on(replace(data, route=route), now)
+        return True
+
+    def _send_on(self, data: Data, now: int) -> None:
+        size = data.message.msdu_bytes + source_route_bytes(data.route)
+        if not self._host.send(data, after(data.route, self._me), size, "", now):
+            self._host.drop(data, Fate.QUEUE_FULL)
+
+    def _on_data(self, data: Data, now: int) -> None:
+        self._learn(data.route, now)
+        if data.message.destination == self._me:
+            self._host.deliver(data, now)
+        else:
+            self._send_on(data, now)
+
+    def _learn(self, route: tuple[int, ...], now: int) -> None:
+        """Cache both directions of a route that lists this robot (RFC 4728, 8.1.4)."""
+        if self._me in route:
+            here = route.index(self._me)
+            self.cache.add(route[here:], now)
+            self.cache.add(route[: here + 1][::-1], now)
+            self._flush(now)
+
+    # Discovery by the origin.
+
+    def _wait(self, data: Data, now: int) -> None:
+        if self._buffered >= SEND_BUFFER:
+            self._host.drop(data, Fate.QUEUE_FULL)
+            return
+        self._buffered += 1
+        data.message.begin_search(now)
+        self._host.at(now + SEND_BUFFER_TIMEOUT_NS, self._on_waited_too_long, data)
+        target = data.message.destination
+        search = self._searches.get(target)
+        if search is not None:
+            search.waiting.append(data)
+            return
+        search = self._searches[target] = Search(target, waiting=[data])
+        self._ask(search, now)
+
+    def _ask(self, search: Search, now: int) -> None:
+        """The next request: the neighbours first, then the net, ever more rarely (RFC 4728, 8.2.1)."""
+        if self._searches.get(search.target) is not search:
+            return
+        if search.sent > MAX_REQUESTS:
+            self._give_up(list(search.waiting), now)
+            return
+        self._number += 1
+        first = search.sent == 0
+        request = Rreq(
+            number=self._number,
+            target=search.target,
+            route=(self._me,),
+            ttl=1 if first else HOP_LIMIT,
+            normal=search.sent > 1,
+        )
+        self._host.send(request, BROADCAST, request.size_bytes, "rreq", now)
+        period = REQUEST_PERIOD_NS << max(0, search.sent - 1)
+        search.sent += 1
+        patience = NONPROPAGATING_NS if first else min(period, MAX_REQUEST_PERIOD_NS)
+        self._host.at(now + patience, self._ask, search)
+
+    def _on_waited_too_long(self, data: Data, now: int) -> None:
+        search = self._searches.get(data.message.destination)
+        if search is not None and data in search.waiting:
+            self._give_up([data], now)
+
+    def _give_up(self, waiting: list[Data], now: int) -> None:
+        for data in waiting:
+            self._take_out(data, now)
+            self._host.drop(data, Fate.NO_ROUTE)
+
+    def _take_out(self, data: Data, now: int) -> None:
+        """A message leaves the send buffer; with the last one its discovery ends."""
+        search = self._searches[data.message.destination]
+        search.waiting.remove(data)
+        if not search.waiting:
+            del self._searches[search.target]
+        self._buffered -= 1
+        data.message.end_search(now)
+
+    def _flush(self, now: int) -> None:
+        """Send whatever waited for a route that the cache has now (RFC 4728, 8.2.6)."""
+        for target in sorted(self._searches):
+            if self.cache.find(target, now) is not None:
+                for data in tuple(self._searches[target].waiting):
+                    self._take_out(data, now)
+                    self.submit(data, now)
+
+    # Requests and replies of others.
+
+    def _on_rreq(self, request: Rreq, sender: int, now: int) -> None:
+        if self._me in request.route or self._blacklist.get(sender, now) > now:
+            return
+        route = (*request.route, self._me)
+        self._learn(route, now)
+        if request.target == self._me:
+            self._reply_after(
+                round(self._host.uniform() * BROADCAST_JITTER_NS), Rrep(route, route[::-1]), now
+            )
+            return
+        seen = self._seen.setdefault(request.origin, deque(maxlen=REQUEST_IDS))
+        if (request.number, request.target) in seen:
+            return
+        seen.append((request.number, request.target))
+        cached = self.cache.find(request.target, now)
+        if cached is not None and not set(request.route) & set(cached):
+            found = (*request.route, *cached)
+            delay = BROADCAST_JITTER_NS * (len(found) - 2 + self._host.uniform())
+            self._reply_after(round(delay), Rrep(found, route[::-1]), now)
+        elif request.ttl > 1:
+            self._pass_on(replace(request, route=route, ttl=request.ttl - 1), now)
+
+    def _pass_on(self, request: Rreq, now: int) -> None:
+        if not request.normal:
+            weight = gamma(self._host.remaining_distance(), self._gamma_distance)
+            if self._host.uniform() >= forwarding_probability(self._host.speed(), weight):
+                return
+        self._host.at(now + round(self._host.uniform() * BROADCAST_JITTER_NS), self._send_rreq, request)
+
+    def _send_rreq(self, request: Rreq, now: int) -> None:
+        self._host.send(request, BROADCAST, request.size_bytes, "rreq", now)
+
+    def _reply_after(self, delay: int, reply: Rrep, now: int) -> None:
+        """Every replier waits a little, longer routes longer (RFC 4728, 8.2.4 and 8.2.5)."""
+        self._host.at(now + delay, self._send_rrep, reply)
+
+    def _send_rrep(self, reply: Rrep, now: int) -> None:
+        self._host.send(reply, after(reply.back, self._me), reply.size_bytes, "rrep", now)
+
+    def _on_rrep(self, reply: Rrep, now: int) -> None:
+        self._learn(reply.found, now)
+        if reply.back[-1] != self._me:
+            self._send_rrep(reply, now)

@@ -1,0 +1,110 @@
+"""Saturated stations on the mission's own event engine: what theory is compared with."""
+
+import math
+from dataclasses import dataclass
+
+from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.messages import Presence
+from onehop.contracts.randomness import generator
+from radio_proxy.core.airtime import Timing
+from radio_proxy.core.dcf import Dcf, Frame
+from radio_proxy.core.draws import Draws
+from radio_proxy.core.medium import Emission, Medium
+from radio_proxy.core.propagation import Field, LinkBudget
+
+SECOND = 1_000_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """Who always has a message: `stations` senders; receiver of each, by index. Places [m]."""
+
+    places: tuple[tuple[float, float], ...]
+    receivers: tuple[int, ...]
+    msdu_bytes: int
+    rts_cts: bool
+
+
+@dataclass(slots=True)
+class Tally:
+    """What came of it. delay: sum over delivered messages from service to arrival [ns]."""
+
+    delivered: list[int]
+    offered: int = 0
+    given_up: int = 0
+    delay: int = 0
+
+
+def ring(stations: int, msdu_bytes: int, rts_cts: bool) -> Load:
+    """One cell: everyone hears everyone equally, each sends to the next (one alone: to a listener)."""
+    count = max(stations, 2)
+    receivers = tuple((i + 1) % count for i in range(stations))
+    return Load(((0.0, 0.0),) * count, receivers, msdu_bytes, rts_cts)
+
+
+def pair(distance: float, msdu_bytes: int, rts_cts: bool) -> Load:
+    """One sender and one receiver at a distance [m]."""
+    return Load(((0.0, 0.0), (distance, 0.0)), (1,), msdu_bytes, rts_cts)
+
+
+class Saturation:
+    """Refills every sender's queue the moment that it is empty; counts arrivals."""
+
+    def __init__(
+        self,
+        load: Load,
+        timing: Timing,
+        budget: LinkBudget,
+        seed: int,
+        retry_limit: int,
+        fade_per_exchange: bool = False,
+    ) -> None:
+        robots = tuple(range(1, len(load.places) + 1))
+        place = Field(budget, robots, ())
+        still = Twist(0.0, 0.0)
+        presences = [
+            Presence(r, 0, Pose(*p, 0.0), still, False) for r, p in zip(robots, load.places, strict=True)
+        ]
+        place.update(tuple(presences), (), ())
+        draws = Draws(generator(seed, "radio"))
+        self._load = load
+        self.tally = Tally([0] * len(load.receivers))
+        self._dcf = Dcf(
+            len(robots),
+            timing,
+            Medium(place, draws),
+            draws,
+            self,
+            retry_limit=retry_limit,
+            queue_frames=2,
+            rts_threshold_bytes=0 if load.rts_cts else load.msdu_bytes,
+            fade_per_exchange=fade_per_exchange,
+        )
+        for sender in range(len(load.receivers)):
+            self._refill(sender, 0)
+
+    def run(self, seconds: float) -> Tally:
+        """The tally after so much simulated time."""
+        self._dcf.run(math.floor(seconds * SECOND))
+        return self.tally
+
+    def _refill(self, sender: int, now: int) -> None:
+        frame = Frame(self._load.receivers[sender], self._load.msdu_bytes, None)
+        self._dcf.enqueue(sender, frame, now, hold_back=True)
+
+    def on_service(self, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
+        self.tally.offered += 1
+
+    def on_received(self, receiver: int, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
+        self.tally.delivered[sender] += 1
+        self.tally.delay += now - frame.service_start
+
+    def on_broadcast_done(self, sender: int, frame: Frame, emission: Emission, now: int) -> None:
+        """Nobody broadcasts here."""
+
+    def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
+        self._refill(sender, now)
+
+    def on_undeliverable(self, sender: int, frame: Frame, now: int) -> None:
+        self.tally.given_up += not frame.received
+        self._refill(sender, now)
