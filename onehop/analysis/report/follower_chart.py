@@ -45,8 +45,7 @@ def follower_chart(material: Material) -> Figure:
         for robot in material.robots:
             _draw(axes, values(material, robot), material.colours[robot], rolling)
     _draw_threshold(all_axes[1], material)
-    all_axes[4].set_yscale("log")
-    all_axes[4].set_ylim(BER_FLOOR / 2, 1.0)
+    _scale_errors(all_axes[4])
     all_axes[4].annotate(
         "0 is drawn at 1e-9", (1.0, 0.0), xycoords="axes fraction", xytext=(-4, 5), ha="right",
         textcoords="offset points", fontsize=7.5, color=INK,
@@ -55,6 +54,13 @@ def follower_chart(material: Material) -> Figure:
     all_axes[-1].set_xlim(0.0, max(material.end_s, material.period_s))
     _draw_legend(figure, material)
     return figure
+
+
+def _scale_errors(axes: Axes) -> None:
+    axes.set_yscale("log")
+    axes.set_ylim(BER_FLOOR / 2, 1.0)
+    axes.set_yticks([1e-9, 1e-6, 1e-3, 1.0], ["1e-9", "1e-6", "1e-3", "1"])
+    axes.minorticks_off()
 
 
 def _draw(axes: Axes, series: Series, colour: str, rolling: bool) -> None:

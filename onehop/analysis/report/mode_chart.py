@@ -15,6 +15,9 @@ SHORTEST_S = 1.0
 """Modes that last less are drawn as part of the one before [s]: border following comes and goes."""
 
 _HEIGHT = 0.62
+_LETTER = 0.0085
+"""Width of a letter in a band, as a share of the axis; a name that does not fit is left out."""
+
 _LOOKS: dict[str, tuple[float, str, str]] = {
     Mode.LEADING: (1.0, "", "leading"),
     Mode.ALONE: (1.0, "xx", "alone"),
@@ -35,9 +38,10 @@ def mode_chart(material: Material) -> Figure:
     rows = len(material.robots)
     lanes = _lanes(material.faults)
     top = 2 + max(1, len(lanes))
-    height = 1.15 + 0.34 * (rows + top)
+    height = 0.85 + 0.34 * (rows + top)
     figure = Figure(figsize=(10.0, height))
-    axes = figure.add_axes((0.085, 0.42 / height, 0.895, 1.0 - 1.15 / height))
+    axes = figure.add_axes((0.085, 0.45 / height, 0.895, 1.0 - 0.85 / height))
+    axes.set_xlim(0.0, max(material.end_s, material.period_s))
     place = {robot: rows - 1 - number for number, robot in enumerate(material.robots)}
     seen: set[str] = set()
     for robot in material.robots:
@@ -53,7 +57,7 @@ def mode_chart(material: Material) -> Figure:
             fontsize=8, color=BAD, zorder=6,
         )  # fmt: skip
     _label(axes, material, rows, top)
-    _explain_looks(figure, material, seen, height)
+    _explain_looks(figure, material, seen)
     return figure
 
 
@@ -119,6 +123,8 @@ def _draw_band(axes: Axes, span: Span, row: float, face: str, ink: str) -> None:
         [(span.start_s, length)], (row - _HEIGHT / 2, _HEIGHT), facecolor=face, edgecolor="white",
         linewidth=0.8, zorder=3,
     )  # fmt: skip
+    if length < len(span.what) * _LETTER * axes.get_xlim()[1]:
+        return
     axes.text(
         span.start_s + length / 2, row, span.what, ha="center", va="center", fontsize=8, color=ink,
         clip_on=True, zorder=4, fontweight="bold" if ink == "white" else "normal",
@@ -140,13 +146,12 @@ def _label(axes: Axes, material: Material, rows: int, top: int) -> None:
             )  # fmt: skip
     axes.axhline(rows - 0.5, color=FAINT, linewidth=0.8)
     axes.set_ylim(-0.6, rows + top - 0.4)
-    axes.set_xlim(0.0, max(material.end_s, material.period_s))
     axes.set_xlabel("time [s]")
     axes.grid(axis="y", visible=False)
     axes.tick_params(axis="y", length=0)
 
 
-def _explain_looks(figure: Figure, material: Material, seen: set[str], height: float) -> None:
+def _explain_looks(figure: Figure, material: Material, seen: set[str]) -> None:
     colour = "#777777"
     handles = []
     for mode, (_, _, name) in _LOOKS.items():
@@ -159,6 +164,6 @@ def _explain_looks(figure: Figure, material: Material, seen: set[str], height: f
     if material.gone:
         handles.append(Patch(facecolor=BAD, label="gone"))
     figure.legend(
-        handles=handles, loc="upper left", bbox_to_anchor=(0.08, 1.0 - 0.05 / height), ncols=9,
+        handles=handles, loc="upper left", bbox_to_anchor=(0.08, 1.0), ncols=9,
         frameon=False, fontsize=8, handlelength=1.6, columnspacing=1.2,
     )  # fmt: skip

@@ -23,9 +23,9 @@ _FATES = {
 
 def radio_chart(material: Material) -> Figure:
     """Two panels: losses by reason and receiver; bytes on the air over time by kind."""
-    figure = Figure(figsize=(10.0, 3.4))
+    figure = Figure(figsize=(10.0, 3.1))
     left, right = figure.subplots(1, 2)
-    figure.subplots_adjust(left=0.07, right=0.98, top=0.80, bottom=0.14, wspace=0.22)
+    figure.subplots_adjust(left=0.07, right=0.98, top=0.86, bottom=0.15, wspace=0.22)
     _draw_losses(left, material)
     _draw_bytes(right, material)
     return figure

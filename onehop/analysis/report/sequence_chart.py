@@ -49,9 +49,9 @@ def elections(material: Material) -> list[tuple[Reign, Reign]]:
 def sequence_chart(material: Material, before: Reign, after: Reign) -> Figure:
     """From the old leader's last word to the new leader's first acknowledgements."""
     rows = _rows(material, before, after)[:MAX_ROWS]
-    height = 1.2 + 0.235 * (len(rows) + len(_silences(rows)))
+    height = 0.7 + 0.235 * (len(rows) + len(_silences(rows)))
     figure = Figure(figsize=(10.0, height))
-    axes = figure.add_axes((0.075, 0.12 / height, 0.905, 1.0 - 0.78 / height))
+    axes = figure.add_axes((0.075, 0.1 / height, 0.905, 1.0 - 0.15 / height))
     places = {robot: float(number) for number, robot in enumerate(material.robots)}
     ends = _draw_rows(axes, material, rows, places)
     bottom = ends + 0.6
@@ -61,7 +61,7 @@ def sequence_chart(material: Material, before: Reign, after: Reign) -> Figure:
         axes.plot([x, x], [-0.6, bottom if dead_row is None else dead_row], color=colour, linewidth=1.4, zorder=1)
         axes.text(x, -1.0, f"robot {robot}", ha="center", fontsize=9, fontweight="bold", color=colour)
     axes.set_xlim(-0.55, len(places) - 0.45)
-    axes.set_ylim(bottom, -1.5)
+    axes.set_ylim(bottom, -1.6)
     axes.set_axis_off()
     return figure
 
@@ -77,7 +77,11 @@ def _rows(material: Material, before: Reign, after: Reign) -> list[_Row]:
             row.frames.append(frame)
     noted: dict[float, _Row] = {}
     for at_s, robot, text, colour in _noted(material, start_s, end_s):
-        noted.setdefault(at_s, _Row(at_s)).notes.append((robot, text, colour))
+        notes = noted.setdefault(at_s, _Row(at_s)).notes
+        if notes and notes[-1][0] == robot:
+            notes[-1] = robot, f"{notes[-1][1]},\n{text}", colour
+        else:
+            notes.append((robot, text, colour))
     ordered = [*noted.values(), *rows.values()]
     return sorted(ordered, key=lambda row: (row.at_s, not row.notes, _arrival(row)))
 
