@@ -32,22 +32,22 @@ def draw_trajectory(log: LogFile, path: Path) -> None:
 
     Raises LogError when the log is damaged.
     """
-    figure = trajectory_figure(Log(log))
+    opened = Log(log)
+    figure = figure_of(opened, _tables(opened))
     FigureCanvasAgg(figure)
     figure.savefig(path, dpi=130)
 
 
-def trajectory_figure(log: Log) -> Figure:
-    """The figure itself, not yet bound to a canvas."""
-    tables = _tables(log)
-    figure = Figure(figsize=(10.5, 8.2), layout="constrained")
-    axes = figure.add_subplot()
-    draw_trajectory_on(axes, log, tables)
+def figure_of(log: Log, tables: dict[str, Table]) -> Figure:
+    """The figure, not yet bound to a canvas; tables: poses, status, departures and contacts."""
+    figure = Figure(figsize=(10.5, 8.2))
+    axes = figure.add_axes((0.06, 0.06, 0.68, 0.89))
+    axes.grid(visible=False)
+    _draw(axes, log, tables)
     return figure
 
 
-def draw_trajectory_on(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
-    """Draw a mission on axes; tables: poses, status, departures and contacts."""
+def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
     poses, status = tables["poses"], tables["status"]
     colours = robot_colours(log.robots)
     gone = departures(poses, tables["departures"])

@@ -1,0 +1,149 @@
+"""A sound log from a torn or damaged one: everything up to the tear, in whole ticks.
+
+Records are copied, not understood, so that a viewer layer or metadata of a later version survive too.
+The last tick of a torn log is given up unless everything that world, radio and robots owe each other in
+a tick is there; nothing before it is ever left out.
+"""
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import msgpack
+from mcap.exceptions import EndOfFile, McapError
+from mcap.records import Attachment, Channel, Footer, Header, Message, Metadata, Schema
+from mcap.stream_reader import StreamReader
+from mcap.writer import CompressionType, Writer
+from zstandard import ZstdError
+
+from onehop.contracts import topics
+from onehop.drive.log_reader import LogFile
+
+_WIRE = topics.wire("")
+
+
+@dataclass(frozen=True, slots=True)
+class Salvage:
+    """What was saved and what was lost. last_tick: -1 when no tick was whole.
+
+    given_up: messages of the unfinished last tick. unread_bytes: bytes of the file that belong to no
+    whole record. damage: why reading stopped, "" at the end of a sound file. ended: the outcome is there.
+    """
+
+    last_tick: int
+    messages: int
+    given_up: int
+    unread_bytes: int
+    damage: str
+    ended: bool
+
+
+class _Tail:
+    """Reads records until the file ends or makes no sense, and remembers where and why."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+        self.good = 0
+        self.damage = ""
+
+    def records(self) -> Iterator[Any]:
+        with self._path.open("rb") as stream:
+            sound = False
+            try:
+                for record in StreamReader(stream, validate_crcs=True).records:
+                    yield record
+                    self.good = stream.tell()
+                    sound = sound or isinstance(record, Footer)
+            except EndOfFile:
+                self.damage = "" if sound else "the file ends before the log does"
+            except (McapError, ValueError, ZstdError) as error:
+                self.damage = f"damaged near byte {stream.tell()}: {error}"
+
+
+class _Copier:
+    """Copies records into a new file; whole ticks only."""
+
+    def __init__(self, out: Path) -> None:
+        self._stream = out.open("wb")
+        self._writer = Writer(self._stream, chunk_size=1 << 20, compression=CompressionType.ZSTD)
+        self._schemas: dict[int, int] = {0: 0}
+        self._channels: dict[int, int] = {}
+        self._keys: dict[int, str] = {}
+        self._pending: list[Message] = []
+        self.last_tick = -1
+        self.messages = 0
+        self.ended = False
+
+    def take(self, record: Any) -> None:
+        writer = self._writer
+        if isinstance(record, Header):
+            writer.start(profile=record.profile, library=f"{record.library}, salvaged")
+        elif isinstance(record, Schema) and record.id not in self._schemas:
+            new = writer.register_schema(record.name, record.encoding, record.data)
+            self._schemas[record.id] = new
+        elif isinstance(record, Channel) and record.id not in self._channels:
+            self._keys[record.id] = record.topic
+            self._channels[record.id] = writer.register_channel(
+                record.topic, record.message_encoding, self._schemas[record.schema_id], record.metadata
+            )
+        elif isinstance(record, Message):
+            if self._pending and self._pending[0].sequence != record.sequence:
+                self._write_pending()
+            self._pending.append(record)
+        elif isinstance(record, Metadata):
+            self._on_metadata(record)
+        elif isinstance(record, Attachment):
+            writer.add_attachment(
+                record.create_time, record.log_time, record.name, record.media_type, record.data
+            )
+
+    def _on_metadata(self, record: Metadata) -> None:
+        if record.name == "outcome":
+            self.ended = True
+            self._write_pending()
+        self._writer.add_metadata(record.name, record.metadata)
+
+    def _write_pending(self) -> None:
+        for message in self._pending:
+            self._writer.add_message(
+                self._channels[message.channel_id], message.log_time, message.data,
+                message.publish_time, message.sequence,
+            )  # fmt: skip
+        if self._pending:
+            self.last_tick = self._pending[0].sequence
+            self.messages += len(self._pending)
+        self._pending = []
+
+    def finish(self, torn: bool) -> int:
+        """Close the file; returns how many messages of an unfinished last tick were given up."""
+        if not torn or self._is_whole():
+            self._write_pending()
+        self._writer.finish()  # type: ignore[no-untyped-call]
+        self._stream.close()
+        return len(self._pending)
+
+    def _is_whole(self) -> bool:
+        data = {self._keys[m.channel_id].removeprefix(_WIRE): m.data for m in self._pending}
+        if topics.TRUTH not in data or topics.ETHER not in data:
+            return False
+        robots = [one["robot"] for one in msgpack.unpackb(data[topics.TRUTH])["present"]]
+        owed = (key(robot) for robot in robots for key in (topics.rx, topics.obs, topics.out))
+        return all(key in data for key in owed)
+
+
+def salvage(torn: Path, out: Path) -> Salvage:
+    """Write a sound log to `out`. Raises LogError when `torn` is no log of ours at all.
+
+    The new file appears under its name only when it is whole.
+    """
+    LogFile(torn)
+    tail, draft = _Tail(torn), out.with_name(out.name + ".part")
+    copier = _Copier(draft)
+    for record in tail.records():
+        copier.take(record)
+    given_up = copier.finish(torn=bool(tail.damage))
+    os.replace(draft, out)
+    unread = torn.stat().st_size - tail.good if tail.damage else 0
+    return Salvage(copier.last_tick, copier.messages, given_up, unread, tail.damage, copier.ended)
