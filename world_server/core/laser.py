@@ -121,7 +121,10 @@ def _look_at_disc(
     cx: float, cy: float, radius: float, limit: float, half: float, per_radian: float,
     fan: FloatArray, ranges: FloatArray,
 ) -> None:  # fmt: skip
-    """Shorten the beams that hit a disc, centre in the robot's frame [m]."""
+    """Shorten the beams that hit a disc, centre in the robot's frame [m].
+
+    A robot does not see the disc in which it is, and that is its own.
+    """
     squared = cx * cx + cy * cy
     if squared > (limit + radius) * (limit + radius) or squared <= radius * radius:
         return
@@ -162,17 +165,14 @@ def _scan_all(
                 limit, half, per_radian, fan, ranges,
             )  # fmt: skip
         for other in range(len(poses)):
-            if other != own:
-                ax, ay = poses[other, 0] - x, poses[other, 1] - y
-                _look_at_disc(
-                    c * ax + s * ay, c * ay - s * ax, radius, limit, half, per_radian, fan, ranges
-                )
+            ax, ay = poses[other, 0] - x, poses[other, 1] - y
+            _look_at_disc(c * ax + s * ay, c * ay - s * ax, radius, limit, half, per_radian, fan, ranges)
         for beam in range(beams):
             scans[row, beam] = ranges[beam] if ranges[beam] <= limit else math.inf
 
 
 class Laser:
-    """The lasers of a team on one map."""
+    """The lasers of a team on one map. Making it loads the compiled kernel: no tick waits for that."""
 
     def __init__(self, walls: WallMap, body: RobotSection) -> None:
         self._half = math.radians(body.laser_fov_deg) / 2.0
@@ -181,6 +181,7 @@ class Laser:
         self._range = body.laser_range
         self._radius = body.radius
         self._cells: CellList = cell_list(walls.segments, walls.bounds, body.laser_range)
+        self.scans(np.empty((0, 3)), np.empty(0, dtype=np.int32))
 
     def scans(self, poses: FloatArray, looking: IntArray) -> Scans:
         """One scan for each robot in `looking`, (k,) int32, rows of poses (n, 3) [m, m, rad].
