@@ -189,15 +189,12 @@ def _apply(table: dict[str, Any], setting: str) -> None:
     target: Any = table
     for step in path[:-1]:
         target = _child(target, step, setting)
-    if isinstance(target, list):
-        _child(target, path[-1], setting)
-        target[int(path[-1])] = value
-    else:
-        target[path[-1]] = value
+    _child(target, path[-1], setting)
+    target[int(path[-1]) if isinstance(target, list) else path[-1]] = value
 
 
 def _child(target: Any, step: str, setting: str) -> Any:
-    if isinstance(target, dict):
+    if isinstance(target, dict) and not step.isdigit():
         return target.setdefault(step, {})
     if isinstance(target, list) and step.isdigit() and int(step) < len(target):
         return target[int(step)]
@@ -239,9 +236,7 @@ def _first_mistake(error: BaseException, origin: str, table: Any) -> ScenarioErr
     if isinstance(error, _MismatchError):
         return ScenarioError(where, error.what, error.remedy)
     if isinstance(error, KeyError):
-        return ScenarioError(
-            _where(origin, [*path, f".{error.args[0]}"]), "is missing", "every scenario has to give it"
-        )
+        return ScenarioError(where, "is missing", "every scenario has to give it")
     return ScenarioError(where, f"{value!r:.60} has the wrong form", "see scenarios/map1.toml")
 
 
