@@ -30,6 +30,17 @@ class Driver(StrEnum):
     INLINE = "inline"
 
 
+class Preset(StrEnum):
+    THESIS = "thesis"
+    PHYSICAL = "physical"
+
+
+class Planner(StrEnum):
+    ESCAPE = "escape"
+    MODIFIED = "modified"
+    ORIGINAL = "original"
+
+
 Settings = Annotated[
     list[str],
     Option("--set", metavar="KEY.PATH=VALUE", help="Change a key of the scenario (repeatable)."),
@@ -106,6 +117,115 @@ def elect(
     from onehop.commands import elect as command
 
     _leave(command.elect(ids, narrow, spacing, as_json))
+
+
+@app.command()
+def diff(
+    a: Annotated[Path, Argument(help="A log.")],
+    b: Annotated[Path, Argument(help="Another log.")],
+    as_json: AsJson = False,
+) -> None:
+    """First difference of two logs: tick, topic, field, both values.
+
+    Example: onehop diff runs/a/mission.mcap runs/b/mission.mcap
+    """
+    from onehop.commands import diff as command
+
+    _leave(command.diff(a, b, as_json))
+
+
+@app.command()
+def salvage(
+    torn: Annotated[Path, Argument(help="A log whose recorder died.")],
+    out: Annotated[Path, Option("-o", "--out", help="The sound log to write.")],
+    as_json: AsJson = False,
+) -> None:
+    """A sound log from a torn one; says what was lost.
+
+    Example: onehop salvage torn.mcap -o sound.mcap
+    """
+    from onehop.commands import salvage as command
+
+    _leave(command.salvage(torn, out, as_json))
+
+
+@app.command()
+def explain(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    robot: Annotated[int, Option(help="Which robot.")],
+    at_s: Annotated[float, Option("--at", help="When, in simulated seconds.")],
+    window_s: Annotated[float, Option("--window", help="Seconds before that to look at.")] = 5.0,
+    as_json: AsJson = False,
+) -> None:
+    """Why a robot did that: its mode, the frames that it got or missed and why, its gain, its error.
+
+    Example: onehop explain runs/demo/mission.mcap --robot 5 --at 61.5
+    """
+    from onehop.commands import explain as command
+
+    _leave(command.explain(log, robot, at_s, window_s, as_json))
+
+
+@app.command()
+def link(
+    distance: Annotated[
+        str, Option(metavar="A,B,C", help="Distances [m].")
+    ] = "1,5,8,10,12,15,20,25,30,40",
+    preset: Annotated[Preset, Option(help="Propagation.")] = Preset.THESIS,
+    rate: Annotated[float, Option(help="1, 2, 5.5 or 11 Mb/s.")] = 1.0,
+    msdu: Annotated[int, Option(help="Payload of a frame [B].")] = 800,
+    seed: Annotated[int, Option(help="Seed of fading and backoff.")] = 1,
+    seconds: Annotated[float, Option(help="Simulated time measured at each distance.")] = 20.0,
+    as_json: AsJson = False,
+) -> None:
+    """Link budget over distance: SNR, error rates, throughput.
+
+    Example: onehop link --distance 5,10,20 --preset thesis
+    """
+    from onehop.commands import link as command
+
+    _leave(command.link(distance, preset.value, rate, msdu, seed, seconds, as_json))
+
+
+@app.command()
+def saturate(
+    stations: Annotated[int, Option(help="Stations that always have a message.")] = 6,
+    rts: Annotated[bool, Option("--rts/--basic", help="With or without RTS/CTS.")] = True,
+    rate: Annotated[float, Option(help="1, 2, 5.5 or 11 Mb/s.")] = 1.0,
+    msdu: Annotated[int, Option(help="Payload of a frame [B].")] = 800,
+    seed: Annotated[int, Option(help="Seed of the backoff.")] = 1,
+    seconds: Annotated[float, Option(help="Simulated time.")] = 20.0,
+    as_json: AsJson = False,
+) -> None:
+    """Throughput of saturated stations in one cell, beside Bianchi's formula.
+
+    Example: onehop saturate --stations 10 --basic
+    """
+    from onehop.commands import link as command
+
+    _leave(command.saturate(stations, rts, rate, msdu, seed, seconds, as_json))
+
+
+@app.command()
+def plan(
+    map_file: Annotated[Path, Argument(metavar="MAP", help=".toml, ROS .yaml or MovingAI .map.")],
+    start: Annotated[str | None, Option(metavar="X,Y", help="Where it starts [m].")] = None,
+    goal: Annotated[str | None, Option(metavar="X,Y", help="Where it goes [m].")] = None,
+    planner: Annotated[Planner | None, Option(help="How it finds its way.")] = None,
+    seed: Annotated[int | None, Option(help="Seed of its samples.")] = None,
+    cell: Annotated[float | None, Option(help="Metres a cell of a MovingAI grid.")] = None,
+    settings: Settings = [],  # noqa: B006
+    figure: Annotated[Path | None, Option(help="Draw map, samples, road maps and path (.png).")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """One leader alone finds its way in a map that it does not know.
+
+    Example: onehop plan scenarios/map1.toml --planner escape --figure plan.png
+    """
+    from onehop.commands import plan as command
+
+    kind = None if planner is None else planner.value
+    _leave(command.plan(map_file, start, goal, kind, seed, cell, settings, figure, as_json))
 
 
 @app.command()

@@ -140,6 +140,35 @@ def bundle_from_json(text: str, files: Mapping[str, bytes], origin: str) -> Bund
     return Bundle(_structure(table, origin), dict(files))
 
 
+def load_map_mission(
+    map_file: Path,
+    start: tuple[float, float] | None,
+    goal: tuple[float, float] | None,
+    settings: Iterable[str],
+    seed: int | None,
+) -> Bundle:
+    """A mission on a bare map, or on that of a scenario, with defaults for the rest.
+
+    Raises ScenarioError; a bare map needs start and goal.
+    """
+    if map_file.suffix == ".toml":
+        return load(map_file, settings, seed, None, start, goal)
+    if start is None or goal is None:
+        raise ScenarioError(str(map_file), "a bare map", "give --start x,y and --goal x,y")
+    table: dict[str, Any] = {
+        "name": map_file.stem,
+        "map": {"file": map_file.name},
+        "start": {"x": start[0], "y": start[1]},
+        "goal": {"x": goal[0], "y": goal[1]},
+    }
+    if seed is not None:
+        table["seed"] = seed
+    for setting in settings:
+        _apply(table, setting)
+    scenario = _structure(table, str(map_file))
+    return Bundle(scenario, _read_map_files(scenario.map.file, map_file.parent, str(map_file)))
+
+
 def changed(scenario: Scenario, settings: Iterable[str]) -> Scenario:
     """The same scenario with some keys changed ("key.path=value"). Raises ScenarioError."""
     table = json.loads(json.dumps(as_map(scenario)))
