@@ -99,7 +99,9 @@ class Driver:
     def shield(self, scan: Ranges, twist: Twist) -> Twist:
         """The same twist, unless it would hit something or enter an inflated obstacle."""
         nearest = float(scan.min())
-        if twist.v <= 0.0 or nearest > self._caution:
+        if twist.v <= 0.0:
+            return twist
+        if nearest > self._caution:
             self.shielded = 0
             return twist
         seen = np.flatnonzero(scan < self._caution)

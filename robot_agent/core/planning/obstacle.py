@@ -1,7 +1,9 @@
 """Which obstacle stands in the way, and where the fan turns because of it (thesis 3.4.1, Algorithm 2 a).
 
 Only what is nearer than the classification range (3 m) counts. The thesis names the cases and does not
-say how they are told apart; here a hit belongs to the right, the front or the left third of the view.
+say how they are told apart; here a hit belongs to the right, the front or the left third of the view,
+and the nearest of them decides: in front with something beside it, a corner; at one side, a wall to follow,
+even if it reaches into the front.
 """
 
 import math
@@ -9,11 +11,15 @@ from enum import Enum
 
 import numpy as np
 
-from robot_agent.core.planning.view import View
+from robot_agent.core.planning.view import BoolArray, View
 from robot_agent.core.scan import FloatArray
 
 FRONT_HALF = math.radians(30.0)
 """Half opening of the front third [rad]."""
+
+
+WALL_BEAMS = 8
+"""Beams to each side of the nearest one that show the direction of a wall."""
 
 
 class Obstacle(Enum):
@@ -32,18 +38,25 @@ def classify(view: View, within: float) -> Obstacle:
     """The case of this view, of hits nearer than `within` [m]."""
     angles = view.fan.angles
     close = view.solid & (view.sight < within)
-    left = bool(close[angles > FRONT_HALF].any())
-    right = bool(close[angles < -FRONT_HALF].any())
+    if not close.any():
+        return Obstacle.NONE
+    left, right = close & (angles > FRONT_HALF), close & (angles < -FRONT_HALF)
     front = bool(close[np.abs(angles) <= FRONT_HALF].any())
-    if front and left != right:
-        return Obstacle.LEFT_CORNER if left else Obstacle.RIGHT_CORNER
-    if front:
+    facing = abs(angles[_nearest(view, close)]) <= FRONT_HALF
+    sides = int(left.any()) + int(right.any())
+    if not sides:
         return Obstacle.FRONT
-    if left and right:
+    nearer_left = bool(angles[_nearest(view, left | right)] > 0.0)
+    if facing or (front and sides == 2):
+        return Obstacle.LEFT_CORNER if nearer_left else Obstacle.RIGHT_CORNER
+    if sides == 2:
         return Obstacle.BOTH
-    if left or right:
-        return Obstacle.LEFT if left else Obstacle.RIGHT
-    return Obstacle.NONE
+    return Obstacle.LEFT if nearer_left else Obstacle.RIGHT
+
+
+def _nearest(view: View, beams: BoolArray) -> int:
+    """The beam with the shortest range among these."""
+    return int(np.argmin(np.where(beams, view.sight, np.inf)))
 
 
 TURNS = {
@@ -59,7 +72,10 @@ def fan_direction(view: View, obstacle: Obstacle, within: float) -> float:
     if obstacle is Obstacle.BOTH:
         return view.pose.heading + _middle(view, within)
     side = view.fan.angles > 0.0 if obstacle is Obstacle.LEFT else view.fan.angles < 0.0
-    beams = np.flatnonzero(side & view.solid & (view.sight < within))
+    close = side & view.solid & (view.sight < within)
+    nearest = _nearest(view, close)
+    beams = np.flatnonzero(close[: nearest + WALL_BEAMS + 1])
+    beams = beams[beams >= nearest - WALL_BEAMS]
     return _along(view.origin + view.directions[beams] * view.sight[beams, None], view.pose.heading)
 
 

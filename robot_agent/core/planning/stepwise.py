@@ -6,8 +6,8 @@ Both can be caught; that is what they are here to show.
 
 Differs: while an obstacle turns the fan, the virtual goal is the point furthest along the fan, as the
 text of 3.4.1 has it, not the nearest to the goal as in the listing, because the nearest one is beside
-the robot and it would never go along a wall. Differs: a virtual goal is not chosen twice, because
-otherwise no point is ever left out and the step back of the listing never happens.
+the robot and it would never go along a wall. Differs: `original` does not choose a virtual goal twice,
+because otherwise its points are never used up (4.1) and the step back of the listing never happens.
 """
 
 import math
@@ -23,7 +23,7 @@ from robot_agent.core.planning.obstacle import TURNS, Obstacle, classify, fan_di
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
 from robot_agent.core.planning.survey import Survey
-from robot_agent.core.planning.view import NO_POINTS, View, squared_distances
+from robot_agent.core.planning.view import NO_POINTS, BoolArray, View, squared_distances
 from robot_agent.core.scan import Fan, FloatArray
 
 LIMITED_HALF = math.radians(45.0)
@@ -72,7 +72,7 @@ class Stepwise:
             self._plan(pose, scan, moving)
         elif self._there(pose):
             self.turns = 0
-            self._face(self._to_goal(pose))
+            self._plan(pose, scan, moving)
         if self.facing is not None or self.progress is not Progress.DRIVING:
             return STANDSTILL
         return self.driver.drive(pose, scan)
@@ -94,6 +94,11 @@ class Stepwise:
         view = View(self.fan, pose, scan, moving, 0.1 * self.inflation)
         self.passage = passage_width(view, 8.0 * self.inflation)
         obstacle = classify(view, self.section.classify_range) if self.limited else Obstacle.NONE
+        if obstacle is Obstacle.NONE and not self.turns:
+            ahead = self._to_goal(pose)
+            if abs(wrap_angle(ahead - pose.heading)) > 0.02:
+                self._face(ahead)
+                return
         if obstacle in TURNS and self.turns < MOST_TURNS:
             self.turns += 1
             self._face(pose.heading + TURNS[obstacle])
@@ -103,7 +108,8 @@ class Stepwise:
         direction, half = pose.heading, LIMITED_HALF if turned else math.pi / 2
         if beside:
             direction = fan_direction(view, obstacle, self.section.classify_range)
-        samples = sample_fan(view, self.rng.random((self.section.samples, 2)), direction, half)
+        draws = self.rng.random((self.section.samples, 2))
+        samples = sample_fan(view, draws, direction, half, self.inflation)
         roadmap = RoadMap(view, samples, self.goal[None], self.inflation, self.inflation)
         self._advance(pose, roadmap, samples, direction if turned else None)
 
@@ -113,8 +119,7 @@ class Stepwise:
         """Drive to the best kept point, or step back. direction: of a turned fan; None towards the goal."""
         costs = roadmap.costs()
         offset = roadmap.points - roadmap.points[0]
-        unused = squared_distances(roadmap.points, self.used).min(axis=1) > self.inflation**2
-        good = np.flatnonzero(np.isfinite(costs) & unused & (roadmap.marks != 0))
+        good = np.flatnonzero(np.isfinite(costs) & self._unused(roadmap.points) & (roadmap.marks != 0))
         at_goal = np.flatnonzero((roadmap.marks == 0) & np.isfinite(costs))
         way: FloatArray | None = None
         if len(at_goal):
@@ -132,6 +137,13 @@ class Stepwise:
         self.used = np.concatenate((self.used, way[-1:]))
         self._take(way)
         self.survey = Survey(pose, samples, roadmap.points, roadmap.edges, way, backtrack=False)
+
+    def _unused(self, points: FloatArray) -> BoolArray:
+        """Which (n, 2) points may become a virtual goal: not the robot itself, and for `original` not
+        where one was before.
+        """
+        taken = points[:1] if self.limited else self.used
+        return np.asarray(squared_distances(points, taken).min(axis=1) > self.inflation**2)
 
     def _step_back(self, pose: Pose, roadmap: RoadMap, samples: FloatArray) -> None:
         """Back to the virtual goal before (listing, 2a); at the start there is nowhere left to go."""
