@@ -91,7 +91,9 @@ def _event(event: dict[str, Any]) -> str:
         for key, value in event.items()
         if key not in ("at_s", "kind")
     )
-    return f"  {event['at_s']:8.2f} s  {event['kind'].replace('_', ' ')}{': ' if details else ''}{details}"
+    return (
+        f"  {event['at_s']:8.2f} s  {event['kind'].replace('_', ' ')}{': ' if details else ''}{details}"
+    )
 
 
 def _short(value: Any) -> str:

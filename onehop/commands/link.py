@@ -20,9 +20,8 @@ def link(
     """Print the link budget over distance."""
     _require_rate(rate)
     _require_size(msdu)
-    section = replace(
-        RadioSection(), preset="physical" if preset == "physical" else "thesis", rate_mbps=rate
-    )
+    physical = preset == "physical"
+    section = replace(RadioSection(), preset="physical" if physical else "thesis", rate_mbps=rate)
     made = link_table(section, _distances(distances), msdu, seed, _positive_seconds(seconds))
     if as_json:
         emit_json(asdict(made))

@@ -85,7 +85,14 @@ def test_an_inline_run_gives_the_promised_keys_and_files(tmp_path: Path) -> None
 def test_a_run_that_does_not_arrive_has_status_1(tmp_path: Path) -> None:
     (tmp_path / "field.toml").write_text(FIELD)
     told = onehop(
-        "run", "field.toml", "--driver", "inline", "--no-record", "--set", "clock.limit_s=2", cwd=tmp_path
+        "run",
+        "field.toml",
+        "--driver",
+        "inline",
+        "--no-record",
+        "--set",
+        "clock.limit_s=2",
+        cwd=tmp_path,
     )
     assert told.returncode == 1
     assert "failed: time limit of 2 s" in told.stdout

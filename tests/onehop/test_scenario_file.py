@@ -70,7 +70,12 @@ def test_settings_change_keys_with_toml_values(tmp_path: Path) -> None:
         ("map.obstacles=[[[1, 2], [3], [5, 1]]]", "map.obstacles[0][1]", "wrong form", "map1.toml"),
         ("start.poses=[[1, 1, 0]]", "start.poses", "1 poses for 4 robots", "order of id"),
         ("faults=[{kind='melt', at_s=1}]", "faults[0].kind", "'melt' is unknown", "'kill'"),
-        ("faults=[{kind='kill', at_s=1, robots=[9]}]", "faults[0].robots", "robot 9 is not", "1, 2, 3, 4"),
+        (
+            "faults=[{kind='kill', at_s=1, robots=[9]}]",
+            "faults[0].robots",
+            "robot 9 is not",
+            "1, 2, 3, 4",
+        ),
         ("faults=[{kind='kill', at_s=-1, robots=[1]}]", "faults[0].at_s", "negative", "since the start"),
         ("clock.period_ms=0", "clock.period_ms", "0 is not positive", "above 0"),
         ("map.file='nowhere.yaml'", "map.file", "a map file and a polygon map", "keep one"),
@@ -111,7 +116,9 @@ def test_a_map_file_that_is_not_there(tmp_path: Path) -> None:
         scenario_file.load(path)
 
 
-@pytest.mark.parametrize("setting", ["team.size", "=3", "team..size=3", "team.size.x=3", "faults.7.at_s=1"])
+@pytest.mark.parametrize(
+    "setting", ["team.size", "=3", "team..size=3", "team.size.x=3", "faults.7.at_s=1"]
+)
 def test_a_setting_of_the_wrong_form_is_refused(tmp_path: Path, setting: str) -> None:
     with pytest.raises(ScenarioError, match="--set"):
         field(tmp_path, setting)

@@ -157,7 +157,9 @@ def _explain_looks(figure: Figure, material: Material, seen: set[str]) -> None:
     for mode, (_, _, name) in _LOOKS.items():
         if mode in seen:
             face, hatch = _look(mode, colour)
-            handles.append(Patch(facecolor=face, edgecolor=colour, hatch=hatch, linewidth=0.4, label=name))
+            handles.append(
+                Patch(facecolor=face, edgecolor=colour, hatch=hatch, linewidth=0.4, label=name)
+            )
     handles += [
         Patch(facecolor=face, label=name) for mode, (face, name) in _ALARM.items() if mode in seen
     ]

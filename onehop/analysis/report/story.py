@@ -22,7 +22,10 @@ def story(material: Material) -> list[Event]:
         *_notes(material),
         *_losses_of_leaders(material),
         *_departures(material),
-        *(Event(span.start_s, 2, _fault(span.what, span.end_s - span.start_s)) for span in material.faults),
+        *(
+            Event(span.start_s, 2, _fault(span.what, span.end_s - span.start_s))
+            for span in material.faults
+        ),
         *_collisions(material),
         *_ending(material),
     ]
@@ -34,7 +37,9 @@ def summary_sentence(material: Material) -> str:
     summary, robots = material.log.summary, material.robots
     team = f"A team of {len(robots)} robots" if len(robots) > 1 else "One robot"
     if summary is None:
-        return f"{team} was under way; the log ends after {material.end_s:.0f} s, before the mission did."
+        return (
+            f"{team} was under way; the log ends after {material.end_s:.0f} s, before the mission did."
+        )
     sentence = {
         "arrived": f"{team} reached the goal after {summary['sim_s']:.0f} s",
         "failed": f"{team} did not reach the goal in {summary['sim_s']:.0f} s",
@@ -70,7 +75,11 @@ def _beginning(material: Material) -> Iterator[Event]:
 def _notes(material: Material) -> Iterator[Event]:
     notes = material.tables["notes"]
     for at_s, robot, kind, data in zip(
-        notes["time_s"].tolist(), notes["robot"].tolist(), notes["kind"].tolist(), notes["data"], strict=True
+        notes["time_s"].tolist(),
+        notes["robot"].tolist(),
+        notes["kind"].tolist(),
+        notes["data"],
+        strict=True,
     ):
         told = _TOLD.get(kind)
         if told is not None:
@@ -85,7 +94,10 @@ _TOLD = {
     "joined": (2, "Leader {robot} takes in robot {robots}."),
     "yielded": (2, "Robot {robot} obeys robot {leader} from now on (epoch {epoch} beats its own)."),
     "roster": (1, "Robot {robot} announces a new roster: {members} (epoch {epoch})."),
-    "narrow": (1, "The way is {passage} m wide, too narrow for the shape: leader {robot} orders a column."),
+    "narrow": (
+        1,
+        "The way is {passage} m wide, too narrow for the shape: leader {robot} orders a column.",
+    ),
     "wide": (1, "The way is wide again: leader {robot} returns to the open shape."),
     "arrived": (2, "Robot {robot} reaches the goal."),
     "no_way": (2, "Robot {robot} finds no way on."),
@@ -95,7 +107,11 @@ _TOLD = {
 
 def _words(data: dict[str, Any]) -> dict[str, str]:
     return {
-        key: _ids(value) if isinstance(value, list) else f"{value:.1f}" if isinstance(value, float) else str(value)
+        key: _ids(value)
+        if isinstance(value, list)
+        else f"{value:.1f}"
+        if isinstance(value, float)
+        else str(value)
         for key, value in data.items()
     }
 
@@ -156,7 +172,9 @@ def _collisions(material: Material) -> Iterator[Event]:
         pair = min(robot, other), max(robot, other)
         if pair not in seen:
             seen.add(pair)
-            yield Event(at_s, 2, f"Robot {robot} touches {f'robot {other}' if other else 'an obstacle'}.")
+            yield Event(
+                at_s, 2, f"Robot {robot} touches {f'robot {other}' if other else 'an obstacle'}."
+            )
 
 
 def _ending(material: Material) -> Iterator[Event]:

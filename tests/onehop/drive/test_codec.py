@@ -40,7 +40,9 @@ statuses = st.builds(
 notes = st.builds(
     Note,
     st.text(max_size=10),
-    st.dictionaries(st.text(max_size=5), st.one_of(counts, numbers, st.text(max_size=5), teams), max_size=3),
+    st.dictionaries(
+        st.text(max_size=5), st.one_of(counts, numbers, st.text(max_size=5), teams), max_size=3
+    ),
 )
 transmissions = st.builds(Transmission, ids, st.binary(max_size=60), counts)
 actions = st.builds(
@@ -95,7 +97,9 @@ def test_garbage_is_refused_with_decode_error_only(data: bytes) -> None:
 
 
 @given(actions, st.data())
-def test_a_cut_or_changed_message_never_raises_anything_else(action: Action, data: st.DataObject) -> None:
+def test_a_cut_or_changed_message_never_raises_anything_else(
+    action: Action, data: st.DataObject
+) -> None:
     wire = bytearray(encode(action))
     place = data.draw(st.integers(0, len(wire) - 1))
     if data.draw(st.booleans()):

@@ -58,6 +58,8 @@ def test_a_half_without_its_other_side_is_kept_for_the_end() -> None:
     assert journal.rest() == [(5, [("truth", b"x")])]
 
 
-@given(st.integers(0, 2**40), st.lists(st.tuples(st.text(max_size=9), st.binary(max_size=30)), max_size=5))
+@given(
+    st.integers(0, 2**40), st.lists(st.tuples(st.text(max_size=9), st.binary(max_size=30)), max_size=5)
+)
 def test_a_record_keeps_messages_byte_for_byte(tick: int, messages: list[WireMessage]) -> None:
     assert unpack_record(pack_record(tick, messages)) == (tick, messages)

@@ -52,7 +52,9 @@ def test_the_official_reader_sees_the_wire_channels(recorded: tuple[Path, str]) 
 
 
 @pytest.mark.parametrize("share", [0.3, 0.7, 0.99])
-def test_a_torn_log_gives_its_whole_prefix(recorded: tuple[Path, str], tmp_path: Path, share: float) -> None:
+def test_a_torn_log_gives_its_whole_prefix(
+    recorded: tuple[Path, str], tmp_path: Path, share: float
+) -> None:
     whole = list(LogFile(recorded[0]).ticks())
     data = recorded[0].read_bytes()
     torn = tmp_path / "torn.mcap"
