@@ -33,6 +33,9 @@ FACING = 1.2
 BLOCKED_TICKS, CLEAR_TICKS = 10, 6
 """Ticks in a row after which an obstacle counts as in the way, and as passed: no flutter of modes."""
 
+IN_SIGHT = 9.5
+"""Points of the trail farther away than this are not looked for [m]: the laser ends at 10 m."""
+
 REACHED = 0.7
 """A point of the trail is passed within this distance [m]."""
 
@@ -106,7 +109,9 @@ class Follower:
         if abs(bearing) > FACING:
             if not self.border:
                 return self._track(error, bearing, k_rho, LOOKAHEAD)
-        elif (free := steering.free_distance(bearing)) >= min(rho, LOOKAHEAD - 0.01):
+        elif (free := steering.free_distance(bearing)) >= min(rho, LOOKAHEAD) and (
+            not self.border or steering.sees(bearing, rho)
+        ):
             self._clear()
             if not self.border:
                 return self._track(error, bearing, k_rho, free)
@@ -187,6 +192,9 @@ class Follower:
     def _trail_aim(self, pose: Pose, trail: Sequence[tuple[float, float]]) -> tuple[float, float] | None:
         """The newest point of the leader's trail that is in sight; kept for a quarter of a second."""
         self._aim_age -= 1
+        if not trail:
+            self._aim = None
+            return None
         if self._aim is not None and self._aim_age > 0:
             return self._aim
         self._aim_age = 5
@@ -194,12 +202,13 @@ class Follower:
         for point in reversed(trail):
             x, y = to_local(pose, *point)
             distance = math.hypot(x, y)
-            if x >= 0.0 and distance < 10.0:
-                free = self._steering.free_distance(math.atan2(y, x), tight=True)
-                if free >= min(distance, LOOKAHEAD - 0.01):
+            if x >= 0.0 and distance < IN_SIGHT:
+                bearing = math.atan2(y, x)
+                free = self._steering.free_distance(bearing, tight=True)
+                if free >= min(distance, LOOKAHEAD) and self._steering.sees(bearing, distance):
                     self._aim = point
                     break
-        if self._aim is None and trail:
+        if self._aim is None:
             away = [math.hypot(x - pose.x, y - pose.y) for x, y in trail]
             nearest = away.index(min(away))
             if away[nearest] < REACHED and nearest < len(trail) - 1:

@@ -28,6 +28,10 @@ ACK_MSDU_BYTES = 60
 BEACON_MSDU_BYTES = 100
 """Sizes on the air [B]: the payload of an ordinary team plus the network headers; ours."""
 
+STALE_PERIODS = 2
+"""Periods after which a message that was under way means nothing any more: routing may hold one back
+for many seconds, and a restarted robot would take it for news."""
+
 HANDOVER_PATIENCE = 2
 """Periods for which a hand-over is repeated before the new leader is given up."""
 
@@ -119,6 +123,8 @@ class Protocol:
             source = reception.source
             if source == self.robot or source not in self._known:
                 self.counters["foreign"] += 1
+            elif now_ns - reception.service_start_ns > STALE_PERIODS * self._period_ns:
+                self.counters["stale"] += 1
             elif isinstance(message, Command):
                 self._on_command(now_ns, pose, in_position, message, reception)
             elif isinstance(message, Ack):
@@ -139,7 +145,7 @@ class Protocol:
             self.counters["foreign"] += 1
         elif source != roster.leader:
             self._on_handover(now_ns, source, command)
-        elif self._obeys(source, roster):
+        elif self._obeys(now_ns, source, roster):
             self._obey(now_ns, roster, command.phase, command.narrow, command.pose)
             link = self.link
             link.trail = command.trail or (*link.trail[-15:], (command.pose.x, command.pose.y))
@@ -151,12 +157,22 @@ class Protocol:
         else:
             self._on_lesser_leader(now_ns, pose, source, roster)
 
-    def _obeys(self, source: int, roster: Roster) -> bool:
-        """Whether a roster that its leader speaks for, and that lists this robot, is to be obeyed."""
+    def _obeys(self, now_ns: int, source: int, roster: Roster) -> bool:
+        """Whether a roster that its leader speaks for, and that lists this robot, is to be obeyed.
+
+        Differs from team.md: a roster without the leader that this robot hears is not obeyed, whatever
+        its epoch, because one robot that was cut off for long would otherwise tear the team apart. The
+        two leaders merge as soon as they hear each other.
+        """
         mine = self.roster
         if not self.open:
             return self.leadership is None and (mine is None or self.waiting or source == mine.leader)
-        if mine is None or roster == mine or roster.beats(mine):
+        if mine is None or roster == mine:
+            return True
+        followed = self.leadership is None and not self.waiting and self.mode is not Mode.JOINING
+        if followed and mine.leader not in roster.members and not self._missed_next(now_ns):
+            return False
+        if roster.beats(mine):
             return True
         return (self.waiting or self.mode is Mode.JOINING) and roster.epoch >= self.epoch
 
@@ -183,7 +199,7 @@ class Protocol:
         roster = beacon.roster
         if source != roster.leader or not self._known.issuperset(roster.members):
             self.counters["foreign"] += 1
-        elif self.robot in roster.members and self._obeys(source, roster):
+        elif self.robot in roster.members and self._obeys(now_ns, source, roster):
             self._obey(now_ns, roster, beacon.phase, beacon.narrow, beacon.pose)
         elif self.leadership is not None:
             self._on_lesser_leader(now_ns, pose, source, roster)
@@ -217,7 +233,7 @@ class Protocol:
         """A robot without a leader calls. Who has missed a Next of the same leader agrees with it."""
         leadership = self.leadership
         if leadership is None:
-            missed = now_ns - self.link.heard_ns > self._period_ns * 5 // 4
+            missed = self._missed_next(now_ns)
             if missed and not self.waiting and source in self.members and self.mode is not Mode.JOINING:
                 self._on_silence(now_ns, pose)
             else:
@@ -228,6 +244,10 @@ class Protocol:
             self._change_roster(now_ns, leadership.roster.merged(join.epoch, ()), ())
         elif now_ns - leadership.opened_ns >= self._successor_patience_ns // 2:
             leadership.due_ns = now_ns
+
+    def _missed_next(self, now_ns: int) -> bool:
+        """Whether the leader was silent for more than a period and a quarter."""
+        return now_ns - self.link.heard_ns > self._period_ns * 5 // 4
 
     def _meet(self, now_ns: int, source: int, epoch: int, members: tuple[int, ...]) -> None:
         """A leader met a stranger: take it and those it speaks for in, once it is known well enough."""

@@ -33,6 +33,9 @@ NEEDED = 1.2
 INERTIA = 0.25
 """Cost of leaving the direction taken before, relative to that of leaving the bearing."""
 
+SIGHT_TOLERANCE = 0.3
+"""A hit this little before a point does not hide it [m]: the bundle's beams are not all on it."""
+
 BUNDLE = 3
 """Neighbouring beams taken as one."""
 
@@ -56,6 +59,8 @@ class Steering:
         self.candidates: FloatArray = np.arange(-half, half + 1e-9, STEP)
         self._apart: FloatArray = np.abs(self._angles[None, :] - self.candidates[:, None])
         self._ranges: FloatArray = np.full(bundles, LOOKAHEAD)
+        self._near: Ranges = np.full(bundles, np.inf, np.float32)
+        self._spacing = float(self._angles[1] - self._angles[0]) if bundles > 1 else math.pi
         self._shadows: list[tuple[FloatArray, FloatArray] | None] = [None, None]
         self._chosen = 0.0
 
@@ -63,6 +68,7 @@ class Steering:
         """Take the scan of this tick."""
         near = np.minimum(scan[0 : self._beams : BUNDLE], scan[1 : self._beams : BUNDLE])
         near = np.minimum(near, scan[2 : self._beams : BUNDLE])
+        self._near = near
         self._ranges = np.minimum(near, 2.0 * LOOKAHEAD, dtype=np.float64)
         self._shadows = [None, None]
 
@@ -80,6 +86,13 @@ class Steering:
         widths, depths = self._shadow(tight)
         in_way = np.abs(self._angles - bearing) < widths
         return float(depths.min(where=in_way, initial=LOOKAHEAD))
+
+    def sees(self, bearing: float, distance: float) -> bool:
+        """Whether the laser looks past a point at this bearing and distance [rad, m]."""
+        place = (bearing - float(self._angles[0])) / self._spacing
+        low = max(0, math.floor(place))
+        beams = self._near[low : low + 2]
+        return bool(beams.size) and float(beams.min()) > distance - SIGHT_TOLERANCE
 
     def choose(self, bearing: float, distance: float, side: int) -> tuple[float, float] | None:
         """Direction to drive in and how far it is free [rad, m]; None when every direction is blocked.

@@ -59,6 +59,7 @@ class Frame:
     """One message under way."""
 
     due: int
+    sent: int
     number: int
     source: int
     destination: int
@@ -67,7 +68,7 @@ class Frame:
 
     def received(self, now_ns: int) -> Reception:
         """What its receiver gets: one hop, no retry."""
-        service_ns = now_ns - SERVICE_NS
+        service_ns = (self.sent + 1) * PERIOD_MS * 1_000_000 - SERVICE_NS
         return Reception(self.source, self.payload, service_ns, now_ns, 1, 1, 45.0, 0.0, self.msdu_bytes)
 
 
@@ -168,7 +169,9 @@ class TeamNet:
 
     def _post(self, source: int, receiver: int, payload: bytes, size: int, delay: int) -> None:
         self._number += 1
-        self.frames.append(Frame(self.tick + delay, self._number, source, receiver, payload, size))
+        self.frames.append(
+            Frame(self.tick + delay, self.tick, self._number, source, receiver, payload, size)
+        )
 
     def run(self, seconds: float) -> None:
         """Let time pass."""
