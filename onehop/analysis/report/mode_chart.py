@@ -37,7 +37,7 @@ def mode_chart(material: Material) -> Figure:
     """The figure; one row a robot, above them leader, shape and faults."""
     rows = len(material.robots)
     lanes = _lanes(material.faults)
-    top = 2 + max(1, len(lanes))
+    top = 2 + len(lanes)
     height = 0.85 + 0.34 * (rows + top)
     figure = Figure(figsize=(10.0, height))
     axes = figure.add_axes((0.085, 0.45 / height, 0.895, 1.0 - 0.85 / height))
@@ -157,7 +157,9 @@ def _explain_looks(figure: Figure, material: Material, seen: set[str]) -> None:
     for mode, (_, _, name) in _LOOKS.items():
         if mode in seen:
             face, hatch = _look(mode, colour)
-            handles.append(Patch(facecolor=face, edgecolor=colour, hatch=hatch, linewidth=0.4, label=name))
+            handles.append(
+                Patch(facecolor=face, edgecolor=colour, hatch=hatch, linewidth=0.4, label=name)
+            )
     handles += [
         Patch(facecolor=face, label=name) for mode, (face, name) in _ALARM.items() if mode in seen
     ]

@@ -58,7 +58,13 @@ def sequence_chart(material: Material, before: Reign, after: Reign) -> Figure:
     for robot, x in places.items():
         colour = material.colours[robot]
         dead_row = _death_row(material, rows, robot)
-        axes.plot([x, x], [-0.6, bottom if dead_row is None else dead_row], color=colour, linewidth=1.4, zorder=1)
+        axes.plot(
+            [x, x],
+            [-0.6, bottom if dead_row is None else dead_row],
+            color=colour,
+            linewidth=1.4,
+            zorder=1,
+        )
         axes.text(x, -1.0, f"robot {robot}", ha="center", fontsize=9, fontweight="bold", color=colour)
     axes.set_xlim(-0.55, len(places) - 0.45)
     axes.set_ylim(bottom, -1.6)
@@ -71,9 +77,7 @@ def _rows(material: Material, before: Reign, after: Reign) -> list[_Row]:
     rows: dict[tuple[float, int, int], _Row] = {}
     for frame in material.frames:
         if start_s <= frame.offered_s <= end_s:
-            row = rows.setdefault(
-                (frame.offered_s, frame.source, frame.number), _Row(frame.offered_s)
-            )
+            row = rows.setdefault((frame.offered_s, frame.source, frame.number), _Row(frame.offered_s))
             row.frames.append(frame)
     noted: dict[float, _Row] = {}
     for at_s, robot, text, colour in _noted(material, start_s, end_s):
@@ -108,7 +112,11 @@ def _noted(material: Material, start_s: float, end_s: float) -> Iterator[tuple[f
             yield one.at_s, one.robot, one.why, BAD
     notes = material.tables["notes"]
     for at_s, robot, kind, data in zip(
-        notes["time_s"].tolist(), notes["robot"].tolist(), notes["kind"].tolist(), notes["data"], strict=True
+        notes["time_s"].tolist(),
+        notes["robot"].tolist(),
+        notes["kind"].tolist(),
+        notes["data"],
+        strict=True,
     ):
         text = _note_text(kind, data)
         if text and start_s <= at_s <= end_s:
@@ -189,7 +197,11 @@ def _name_frame(axes: Axes, frames: list[Frame], y: float, places: dict[int, flo
     first = frames[0]
     start, end = places[first.source], places[first.receiver]
     lost = [frame for frame in frames if not frame.delivered]
-    reason = "" if not lost else f": {lost[0].fate}" + (f", {len(lost)} of {len(frames)}" if first.broadcast else "")
+    reason = (
+        ""
+        if not lost
+        else f": {lost[0].fate}" + (f", {len(lost)} of {len(frames)}" if first.broadcast else "")
+    )
     text = f"{first.kind}{' to all' if first.broadcast else ''}{reason}"
     side = 1 if end > start else -1
     axes.text(
