@@ -41,6 +41,11 @@ class Planner(StrEnum):
     ORIGINAL = "original"
 
 
+class Film(StrEnum):
+    GIF = "gif"
+    MP4 = "mp4"
+
+
 Settings = Annotated[
     list[str],
     Option("--set", metavar="KEY.PATH=VALUE", help="Change a key of the scenario (repeatable)."),
@@ -237,6 +242,91 @@ def doctor(as_json: AsJson = False) -> None:
     from onehop.commands import doctor as command
 
     _leave(command.doctor(as_json))
+
+
+@app.command()
+def report(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    out: Annotated[
+        Path | None, Option(help="Folder for page and figures (default: beside the log).")
+    ] = None,
+    film: Annotated[Film | None, Option(help="Make a film of the mission, too.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Show a mission on one self-contained page, with every figure as PNG and SVG.
+
+    Example: onehop report runs/demo/mission.mcap --film gif
+    """
+    from onehop.commands import report as command
+
+    _leave(command.report(log, out, film.value if film else None, as_json))
+
+
+@app.command()
+def explain(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    robot: Annotated[int, Option(help="Which robot.")],
+    at_s: Annotated[float, Option("--at", help="At which simulated time [s].")],
+    window_s: Annotated[
+        float, Option("--window", help="Tell messages of this long before it [s].")
+    ] = 6.0,
+    as_json: AsJson = False,
+) -> None:
+    """Why a robot did what it did: its mode, what it heard and missed, its k_rho, its error.
+
+    Example: onehop explain runs/demo/mission.mcap --robot 5 --at 63.5
+    """
+    from onehop.commands import explain as command
+
+    _leave(command.explain(log, robot, at_s, window_s, as_json))
+
+
+@app.command()
+def diff(
+    a: Annotated[Path, Argument(help="One log.")],
+    b: Annotated[Path, Argument(help="Another log.")],
+    as_json: AsJson = False,
+) -> None:
+    """The first difference of two logs: tick, topic, field, both values.
+
+    Example: onehop diff runs/a/mission.mcap runs/b/mission.mcap
+    """
+    from onehop.commands import diff as command
+
+    _leave(command.diff(a, b, as_json))
+
+
+@app.command()
+def salvage(
+    torn: Annotated[Path, Argument(help="A log whose recorder was killed, or that is damaged.")],
+    out: Annotated[Path, Option("-o", "--out", metavar="LOG", help="The sound log to write.")],
+    as_json: AsJson = False,
+) -> None:
+    """Make a sound log of a torn one, and say what was lost.
+
+    Example: onehop salvage runs/demo/mission.mcap -o saved.mcap
+    """
+    from onehop.commands import salvage as command
+
+    _leave(command.salvage(torn, out, as_json))
+
+
+@app.command()
+def view(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    out: Annotated[
+        Path | None, Option("-o", "--out", metavar="LOG", help="Write here, not into the log itself.")
+    ] = None,
+    open_viewer: Annotated[bool, Option("--open", help="Start Rerun on it, if installed.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Add what Foxglove and Rerun can show: poses, scans, map, links, events.
+
+    Example: onehop view runs/demo/mission.mcap --open
+    """
+    from onehop.commands import view as command
+
+    _leave(command.view(log, out, open_viewer, as_json))
 
 
 def main() -> NoReturn:

@@ -17,7 +17,7 @@ from onehop.analysis.tables import Table
 from onehop.analysis.timeline import departures
 from onehop.contracts.errors import InputError
 from onehop.contracts.messages import Truth
-from onehop.contracts.scenario import GainsSection
+from onehop.contracts.scenario import GainsSection, TeamSection
 from robot_agent.core.messages import Command
 
 WINDOW_S = 6.0
@@ -57,6 +57,7 @@ class Explanation:
     events: tuple[dict[str, Any], ...]
     faults: tuple[str, ...]
     gains: GainsSection
+    team: TeamSection
 
     def as_json(self) -> dict[str, Any]:
         """Everything as plain values; lost messages have no arrival."""
@@ -127,6 +128,7 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         events=_events(tables["notes"], last_s - window_s),
         faults=tuple(_faults(log, robot, last_s)),
         gains=log.scenario.gains,
+        team=log.scenario.team,
     )
 
 

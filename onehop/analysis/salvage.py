@@ -13,11 +13,11 @@ from typing import Any
 
 import msgpack
 from mcap.exceptions import EndOfFile, McapError
-from mcap.records import Attachment, Channel, Footer, Header, Message, Metadata, Schema
+from mcap.records import Footer, Message, Metadata
 from mcap.stream_reader import StreamReader
-from mcap.writer import CompressionType, Writer
 from zstandard import ZstdError
 
+from onehop.analysis.copying import LogCopy
 from onehop.contracts import topics
 from onehop.drive.log_reader import LogFile
 
@@ -28,8 +28,8 @@ _WIRE = topics.wire("")
 class Salvage:
     """What was saved and what was lost. last_tick: -1 when no tick was whole.
 
-    given_up: messages of the unfinished last tick. unread_bytes: bytes of the file that belong to no
-    whole record. damage: why reading stopped, "" at the end of a sound file. ended: the outcome is there.
+    given_up: messages of the unfinished last tick. unread_bytes: bytes of the file after the last whole
+    record. damage: why reading stopped, "" at the end of a sound file. ended: the outcome is there.
     """
 
     last_tick: int
@@ -62,55 +62,30 @@ class _Tail:
                 self.damage = f"damaged near byte {stream.tell()}: {error}"
 
 
-class _Copier:
+class _Rescue:
     """Copies records into a new file; whole ticks only."""
 
     def __init__(self, out: Path) -> None:
-        self._stream = out.open("wb")
-        self._writer = Writer(self._stream, chunk_size=1 << 20, compression=CompressionType.ZSTD)
-        self._schemas: dict[int, int] = {0: 0}
-        self._channels: dict[int, int] = {}
-        self._keys: dict[int, str] = {}
+        self._copy = LogCopy(out, "salvaged")
         self._pending: list[Message] = []
         self.last_tick = -1
         self.messages = 0
         self.ended = False
 
     def take(self, record: Any) -> None:
-        writer = self._writer
-        if isinstance(record, Header):
-            writer.start(profile=record.profile, library=f"{record.library}, salvaged")
-        elif isinstance(record, Schema) and record.id not in self._schemas:
-            new = writer.register_schema(record.name, record.encoding, record.data)
-            self._schemas[record.id] = new
-        elif isinstance(record, Channel) and record.id not in self._channels:
-            self._keys[record.id] = record.topic
-            self._channels[record.id] = writer.register_channel(
-                record.topic, record.message_encoding, self._schemas[record.schema_id], record.metadata
-            )
-        elif isinstance(record, Message):
+        if isinstance(record, Message):
             if self._pending and self._pending[0].sequence != record.sequence:
                 self._write_pending()
             self._pending.append(record)
-        elif isinstance(record, Metadata):
-            self._on_metadata(record)
-        elif isinstance(record, Attachment):
-            writer.add_attachment(
-                record.create_time, record.log_time, record.name, record.media_type, record.data
-            )
-
-    def _on_metadata(self, record: Metadata) -> None:
-        if record.name == "outcome":
+            return
+        if isinstance(record, Metadata) and record.name == "outcome":
             self.ended = True
             self._write_pending()
-        self._writer.add_metadata(record.name, record.metadata)
+        self._copy.take(record)
 
     def _write_pending(self) -> None:
         for message in self._pending:
-            self._writer.add_message(
-                self._channels[message.channel_id], message.log_time, message.data,
-                message.publish_time, message.sequence,
-            )  # fmt: skip
+            self._copy.take_message(message)
         if self._pending:
             self.last_tick = self._pending[0].sequence
             self.messages += len(self._pending)
@@ -120,12 +95,11 @@ class _Copier:
         """Close the file; returns how many messages of an unfinished last tick were given up."""
         if not torn or self._is_whole():
             self._write_pending()
-        self._writer.finish()  # type: ignore[no-untyped-call]
-        self._stream.close()
+        self._copy.close()
         return len(self._pending)
 
     def _is_whole(self) -> bool:
-        data = {self._keys[m.channel_id].removeprefix(_WIRE): m.data for m in self._pending}
+        data = {self._copy.keys[m.channel_id].removeprefix(_WIRE): m.data for m in self._pending}
         if topics.TRUTH not in data or topics.ETHER not in data:
             return False
         robots = [one["robot"] for one in msgpack.unpackb(data[topics.TRUTH])["present"]]
@@ -140,10 +114,10 @@ def salvage(torn: Path, out: Path) -> Salvage:
     """
     LogFile(torn)
     tail, draft = _Tail(torn), out.with_name(out.name + ".part")
-    copier = _Copier(draft)
+    rescue = _Rescue(draft)
     for record in tail.records():
-        copier.take(record)
-    given_up = copier.finish(torn=bool(tail.damage))
+        rescue.take(record)
+    given_up = rescue.finish(torn=bool(tail.damage))
     os.replace(draft, out)
     unread = torn.stat().st_size - tail.good if tail.damage else 0
-    return Salvage(copier.last_tick, copier.messages, given_up, unread, tail.damage, copier.ended)
+    return Salvage(rescue.last_tick, rescue.messages, given_up, unread, tail.damage, rescue.ended)

@@ -35,7 +35,7 @@ def tell(one: Explanation) -> Iterator[str]:
         yield "  none"
     yield ""
     yield "Messages to it and from it"
-    yield from (_message(frame, one.robot) for frame in one.heard)
+    yield from _messages(one)
     if not one.heard:
         yield "  none"
 
@@ -82,7 +82,10 @@ def _gain(one: Explanation) -> Iterator[str]:
     if one.next_s is None:
         yield "leader   never heard a command of this leader"
     else:
-        yield f"leader   last command arrived at {one.next_s:.3f} s, {one.at_s - one.next_s:.2f} s before"
+        yield (
+            f"leader   last command arrived at {one.next_s:.3f} s, {one.at_s - one.next_s:.2f} s before; "
+            f"one is due every {one.team.next_period:g} s, patience {one.team.leader_timeout:g} s"
+        )
 
 
 def _event(event: dict[str, Any]) -> str:
@@ -100,11 +103,35 @@ def _short(value: Any) -> str:
     return f"{value:.2f}" if isinstance(value, float) else str(value)
 
 
+def _messages(one: Explanation) -> Iterator[str]:
+    """One line a message; what it said to all is one line, however many were to hear it."""
+    told: set[int] = set()
+    for frame in one.heard:
+        if frame.source != one.robot or not frame.broadcast:
+            yield _message(frame, one.robot)
+        elif frame.number not in told:
+            told.add(frame.number)
+            copies = [other for other in one.heard if _same(frame, other)]
+            yield _broadcast(frame, copies)
+
+
+def _same(frame: Frame, other: Frame) -> bool:
+    return (frame.source, frame.number) == (other.source, other.number)
+
+
+def _broadcast(frame: Frame, copies: list[Frame]) -> str:
+    reached = " ".join(str(copy.receiver) for copy in copies if copy.delivered) or "nobody"
+    missed = ", ".join(f"{copy.receiver} {copy.fate}" for copy in copies if not copy.delivered)
+    lost = f", LOST: {missed}" if missed else ""
+    return (
+        f"  {frame.offered_s:8.2f} s  to all  {frame.kind:<13} reached {reached}{lost}; "
+        f"{content_of(frame.message)}"
+    )
+
+
 def _message(frame: Frame, robot: int) -> str:
-    if frame.source == robot:
-        direction = f"to   {frame.receiver}{' (all)' if frame.broadcast else ''}"
-    else:
-        direction = f"from {frame.source}"
+    to_it = frame.receiver == robot
+    direction = f"from {frame.source}" if to_it else f"to   {frame.receiver}"
     if frame.delivered:
         delay_ms = 1e3 * (frame.arrival_s - frame.offered_s)
         fate = f"arrived after {delay_ms:.1f} ms, SNR {frame.snr_db:.1f} dB"
@@ -114,4 +141,4 @@ def _message(frame: Frame, robot: int) -> str:
     tries = f", attempts {frame.attempts}" if frame.attempts > 1 else ""
     via = f", via {' '.join(map(str, frame.path[1:-1]))}" if len(frame.path) > 2 else ""
     says = content_of(frame.message)
-    return f"  {frame.offered_s:8.2f} s  {direction:<14} {frame.kind:<13} {fate}{tries}{via}; {says}"
+    return f"  {frame.offered_s:8.2f} s  {direction:<7} {frame.kind:<13} {fate}{tries}{via}; {says}"

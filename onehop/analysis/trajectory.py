@@ -12,7 +12,7 @@ from matplotlib.patheffects import withStroke
 
 from onehop.analysis.ground import draw_ground
 from onehop.analysis.log import Log
-from onehop.analysis.palette import BAD, FAINT, INK, robot_colours
+from onehop.analysis.palette import BAD, INK, robot_colours
 from onehop.analysis.tables import Table, build
 from onehop.analysis.timeline import Departure, departures, describe_fault, reigns
 from onehop.contracts.messages import Reign
@@ -130,7 +130,7 @@ def _label_time(
     if np.hypot(spot[0] - before[0], spot[1] - before[1]) < 3.0:
         return before
     axes.annotate(
-        f"{time_s:g} s", spot, textcoords="offset points", xytext=(7, 5), fontsize=7.5, color=INK,
+        f"{time_s:.0f} s", spot, textcoords="offset points", xytext=(7, 5), fontsize=7.5, color=INK,
         zorder=9, path_effects=_HALO,
     )  # fmt: skip
     return spot
@@ -212,8 +212,7 @@ def _legend(log: Log, gone: list[Departure], colours: dict[int, str]) -> list[Li
             [],
             [],
             linestyle="none",
-            marker="$!$",
-            color=FAINT,
+            marker="x", markersize=5, color=BAD,
             label=f"{f.at_s:g} s: {describe_fault(f)}",
         )
         for f in log.scenario.faults

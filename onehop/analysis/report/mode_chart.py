@@ -37,7 +37,7 @@ def mode_chart(material: Material) -> Figure:
     """The figure; one row a robot, above them leader, shape and faults."""
     rows = len(material.robots)
     lanes = _lanes(material.faults)
-    top = 2 + max(1, len(lanes))
+    top = 2 + len(lanes)
     height = 0.85 + 0.34 * (rows + top)
     figure = Figure(figsize=(10.0, height))
     axes = figure.add_axes((0.085, 0.45 / height, 0.895, 1.0 - 0.85 / height))

@@ -30,10 +30,24 @@ img {{ max-width: 100%; height: auto; }}
 table {{ border-collapse: collapse; margin: 0.6em 0; }}
 th, td {{ padding: 0.25em 0.8em; text-align: right; border-bottom: 1px solid #eee; vertical-align: top; }}
 th {{ border-bottom: 2px solid #ccc; }} th.text, td.text {{ text-align: left; }}
-td.time {{ white-space: nowrap; color: #666; }} tr.turn td {{ font-weight: 600; }}
+td.time, td.name {{ white-space: nowrap; }} td.time {{ color: #666; }}
+dt {{ font-weight: 600; }} dd {{ margin: 0 0 0.4em 1.5em; }} tr.turn td {{ font-weight: 600; }}
 tr.dead td {{ color: #888; }} .chip {{ display: inline-block; width: 0.85em; height: 0.85em; border-radius: 50%; margin-right: 0.45em; vertical-align: -0.08em; }}
 pre {{ background: #f6f5f2; padding: 1em; overflow-x: auto; font-size: 12px; }}
 """  # noqa: E501 - one rule a line is easier to read
+
+
+_WORDS = {
+    "Next": "The leader's command to each follower, every few seconds: where it is, who belongs to the team, "
+    "which shape. A follower computes its slot from it, and measures the throughput of the link on it.",
+    "Ack": "A follower's answer. A leader that misses several gives the follower up (Lost_Follower).",
+    "Beacon, Join": "A leader's word to everyone in range, and a robot's request to be taken in.",
+    "slot": "A robot's place in the formation, relative to the leader.",
+    "k_rho": "How strongly a follower drives towards its slot. Below the threshold of throughput it is high: "
+    "the robot hurries before it loses its leader.",
+    "epoch": "Number of a roster. The higher one is obeyed when two differ.",
+    "border following": "A robot goes around an obstacle that lies between it and its slot.",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,11 +119,20 @@ def _page(material: Material, pictures: list[_Picture]) -> str:
 <h2>The team</h2>
 {_team_table(material)}
 {sections}
+<h2>Words</h2>
+{_glossary()}
 <h2>The run</h2>
 {_run_table(material)}
 <details><summary>The whole scenario</summary><pre>{html.escape(json.dumps(as_map(scenario), indent=1))}</pre></details>
 </body></html>
 """  # noqa: E501
+
+
+def _glossary() -> str:
+    entries = "".join(
+        f"<dt>{word}</dt><dd>{html.escape(meaning)}</dd>" for word, meaning in _WORDS.items()
+    )
+    return f"<dl>{entries}</dl>"
 
 
 def _section(picture: _Picture) -> str:
@@ -136,7 +159,7 @@ def _team_table(material: Material) -> str:
         f'<th class="{kind}">{name}</th>'
         for kind, name in (
             ("text", "robot"), ("text", "fate"), ("", "led for"), ("", "drove"), ("", "mean error"),
-            ("", "mean throughput"), ("", "below threshold"), ("", "messages lost on the way to it"),
+            ("", "mean throughput"), ("", "below threshold"), ("", "messages to it lost"),
         )
     )  # fmt: skip
     return f"<table><tr>{heads}</tr>{rows}</table>"
@@ -166,7 +189,7 @@ def _team_row(material: Material, robot: int) -> str:
     label = f"<s>robot {name}</s>" if dead else f"robot {name}"
     fate = html.escape(_fate(material, robot))
     return (
-        f'<tr class="{"dead" if dead else ""}"><td class="text">{chip}{label}</td>'
+        f'<tr class="{"dead" if dead else ""}"><td class="text name">{chip}{label}</td>'
         f'<td class="text">{fate}</td>{numbers}</tr>'
     )
 

@@ -20,6 +20,7 @@ def story(material: Material) -> list[Event]:
     events = [
         *_beginning(material),
         *_notes(material),
+        *_columns(material),
         *_losses_of_leaders(material),
         *_departures(material),
         *(
@@ -47,7 +48,7 @@ def summary_sentence(material: Material) -> str:
     }[summary["outcome"]]
     counted = f" with {len(summary['arrived'])} of {len(robots)}" if summary["arrived"] else ""
     lost = "; ".join(
-        f"robot {one['robot']} was lost at {one['at_s']:.0f} s ({one['why']})"
+        f"robot {one['robot']} was lost at {one['at_s']:.0f} s, {one['why']}"
         for one in summary["lost"]
         if one["why"] != "did not arrive"
     )
@@ -55,7 +56,8 @@ def summary_sentence(material: Material) -> str:
     led = ""
     if len(leaders) > 1:
         led = " The lead passed from robot " + " to ".join(map(str, leaders)) + "."
-    return f"{sentence}{counted}{': ' + lost if lost else ''}.{led} Reason given: {summary['reason']}."
+    reason = "" if summary["outcome"] == "arrived" else f" Reason: {summary['reason']}."
+    return f"{sentence}{counted}{': ' + lost if lost else ''}.{led}{reason}"
 
 
 def _ids(robots: Any) -> str:
@@ -94,11 +96,6 @@ _TOLD = {
     "joined": (2, "Leader {robot} takes in robot {robots}."),
     "yielded": (2, "Robot {robot} obeys robot {leader} from now on (epoch {epoch} beats its own)."),
     "roster": (1, "Robot {robot} announces a new roster: {members} (epoch {epoch})."),
-    "narrow": (
-        1,
-        "The way is {passage} m wide, too narrow for the shape: leader {robot} orders a column.",
-    ),
-    "wide": (1, "The way is wide again: leader {robot} returns to the open shape."),
     "arrived": (2, "Robot {robot} reaches the goal."),
     "no_way": (2, "Robot {robot} finds no way on."),
 }
@@ -114,6 +111,25 @@ def _words(data: dict[str, Any]) -> dict[str, str]:
         else str(value)
         for key, value in data.items()
     }
+
+
+def _columns(material: Material) -> Iterator[Event]:
+    """Each narrow passage as one event, from the order to drive in column to its end."""
+    notes = material.tables["notes"]
+    begun: dict[int, float] = {}
+    for at_s, robot, kind in zip(
+        notes["time_s"].tolist(), notes["robot"].tolist(), notes["kind"].tolist(), strict=True
+    ):
+        if kind == "narrow":
+            begun[robot] = at_s
+        elif kind == "wide" and robot in begun:
+            yield _column(begun.pop(robot), robot, f", until {at_s:.0f} s")
+    for robot, at_s in begun.items():
+        yield _column(at_s, robot, "")
+
+
+def _column(at_s: float, leader: int, until: str) -> Event:
+    return Event(at_s, 1, f"Too narrow for the shape: leader {leader} orders a column{until}.")
 
 
 def _losses_of_leaders(material: Material) -> Iterator[Event]:
@@ -156,7 +172,9 @@ def _successor(reigns: list[Reign], at_s: float, leader: int) -> Reign | None:
 
 def _departures(material: Material) -> Iterator[Event]:
     for one in material.gone:
-        yield Event(one.at_s, 2, f"Robot {one.robot} is gone: {one.why}.")
+        leads = [reign.leader for reign in material.reigns if reign.at_s < one.at_s]
+        part = ", the leader," if leads and leads[-1] == one.robot else ""
+        yield Event(one.at_s, 2, f"Robot {one.robot}{part} is gone: {one.why}.")
 
 
 def _fault(what: str, lasted_s: float) -> str:
