@@ -19,7 +19,7 @@ from onehop.contracts.scenario import Briefing
 from robot_agent.core.planning.distbug import DistBug
 from robot_agent.core.planning.driving import Driver
 from robot_agent.core.planning.guidance import Guidance, Progress
-from robot_agent.core.planning.openings import NOTHING, Openings
+from robot_agent.core.planning.openings import NOTHING, Openings, edge_samples
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
 from robot_agent.core.planning.survey import Survey
@@ -105,6 +105,7 @@ class Escape:
         self.afterimage.keep(view)
         draws = self.rng.random((self.section.samples, 2))
         samples = sample_fan(view, draws, pose.heading, math.pi, self.clearance)
+        samples = np.concatenate((samples, edge_samples(view, 1.1 * self.clearance)))
         known = self.openings.in_view(view)
         extras = np.concatenate((self.goal[None], self.openings.memory.xy[known]))
         roadmap = RoadMap(view, samples, extras, self.clearance, self.comfort)

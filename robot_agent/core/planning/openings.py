@@ -18,6 +18,9 @@ from robot_agent.core.scan import FloatArray
 
 NOTHING = -1
 
+MOST_MOVES = 8
+"""Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
+
 
 class Openings:
     """Way points with the rules that make, close and choose openings. Lengths follow the inflation [m]."""
@@ -25,6 +28,7 @@ class Openings:
     def __init__(self, capacity: int, goal: FloatArray, inflation: float) -> None:
         self.memory = WayPoints(capacity)
         self.gaze: FloatArray = np.zeros(capacity)
+        self.moves = np.zeros(capacity, dtype=np.uint8)
         self.goal = goal
         self.inflation = inflation
         self.spacing = 4.0 * inflation
@@ -34,7 +38,7 @@ class Openings:
     @property
     def nbytes(self) -> int:
         """Bytes of the memory, full or empty."""
-        return self.memory.nbytes + int(self.gaze.nbytes)
+        return self.memory.nbytes + int(self.gaze.nbytes + self.moves.nbytes)
 
     def in_view(self, view: View) -> list[int]:
         """Places and openings in view, ascending."""
@@ -67,17 +71,16 @@ class Openings:
     def note(
         self, view: View, roadmap: RoadMap, costs: FloatArray, known: list[int], record: float
     ) -> None:
-        """Close the openings that are in full view, and remember the new ones.
+        """Close the openings that are in full view or move them on, and remember the new ones.
 
         record: least distance to the goal that the robot ever had [m].
         """
         rim, outward = unseen_rim(view, 2.0 * self.inflation, self.goal, record)
-        self._refute(view, rim, known)
         near_rim = squared_distances(roadmap.points, rim)
-        candidates = np.flatnonzero(
-            np.isfinite(costs) & (near_rim.min(axis=1, initial=np.inf) < self.rim**2)
-        )
+        beside = near_rim.min(axis=1, initial=np.inf) < self.rim**2
+        candidates = np.flatnonzero(np.isfinite(costs) & beside)
         candidates = candidates[candidates > 0]
+        self._refute(view, rim, known, roadmap.points[candidates])
         candidates = candidates[self._worth(roadmap.points[candidates], record)]
         value = costs[candidates] + np.hypot(*(roadmap.points[candidates] - self.goal).T)
         offset = math.dist(view.origin, self.memory.xy[self.place])
@@ -90,6 +93,7 @@ class Openings:
                 fresh.append(point)
                 number = self.memory.add(float(here[0]), float(here[1]), OPENING)
                 self.gaze[number] = outward[int(np.argmin(near_rim[point]))]
+                self.moves[number] = 0
                 self.memory.join(self.place, number, float(costs[point]) + offset)
 
     def _worth(self, points: FloatArray, record: float) -> BoolArray:
@@ -106,8 +110,10 @@ class Openings:
         new = (nearest[PLACE] >= self.spacing**2) & (nearest[CLOSED] >= 0.25 * self.spacing**2)
         return np.asarray((nearest[OPENING] >= self.spacing**2) & (new | progress))
 
-    def _refute(self, view: View, rim: FloatArray, known: list[int]) -> None:
-        """Openings in full view that have nothing unseen around them any more are closed."""
+    def _refute(self, view: View, rim: FloatArray, known: list[int], candidates: FloatArray) -> None:
+        """Openings in full view with nothing unseen around them: move them on with the edge of the
+        unseen if that is near, and close the others.
+        """
         openings = np.array([n for n in known if self.memory.kind[n] == OPENING], dtype=np.intp)
         if not len(openings):
             return
@@ -117,13 +123,26 @@ class Openings:
         turn = self.gaze[openings] - view.pose.heading
         behind = (np.cos(turn) < 0.36) & (np.hypot(*(points - view.origin).T) < 1.5 * self.spacing)
         for number in openings[~still & ~behind].tolist():
-            self.memory.close(number)
+            if not self._move_on(number, candidates):
+                self.memory.close(number)
+
+    def _move_on(self, number: int, candidates: FloatArray) -> bool:
+        """The edge of the unseen recedes as the robot comes closer; its opening goes with it."""
+        if not len(candidates) or self.moves[number] >= MOST_MOVES:
+            return False
+        distance = np.hypot(*(candidates - self.memory.xy[number]).T)
+        nearest = int(np.argmin(distance))
+        if distance[nearest] > 1.5 * self.spacing:
+            return False
+        self.moves[number] += 1
+        self.memory.xy[number] = candidates[nearest]
+        return True
 
     def arrive(self, pose: Pose) -> None:
         """Close the openings that the robot stands in with their unseen side in view."""
         for number in self.memory.of_kind(OPENING).tolist():
-            near = math.dist((pose.x, pose.y), self.memory.xy[number]) < self.inflation
-            if near and abs(wrap_angle(float(self.gaze[number]) - pose.heading)) < 1.0:
+            near = math.dist((pose.x, pose.y), self.memory.xy[number]) < 0.5 * self.spacing
+            if near and abs(wrap_angle(float(self.gaze[number]) - pose.heading)) < 1.6:
                 self.memory.close(number)
 
     def best(self, cost: dict[int, float], kept: int) -> int:
@@ -145,9 +164,14 @@ class Openings:
         return min(places, key=lambda n: (math.dist(self.memory.xy[n], self.goal), n))
 
 
-def unseen_rim(
-    view: View, gap: float, goal: FloatArray, record: float
-) -> tuple[FloatArray, FloatArray]:
+def edge_samples(view: View, margin: float) -> FloatArray:
+    """Points for the road map where outlines leave the laser's range, (n, 2) [m]: chance may miss them."""
+    beside = np.convolve(~view.open_beams, np.ones(13), mode="same") > 0
+    far = np.flatnonzero(view.open_beams & beside)
+    return view.origin + view.directions[far] * (view.fan.range - margin)
+
+
+def unseen_rim(view: View, gap: float, goal: FloatArray, record: float) -> tuple[FloatArray, FloatArray]:
     """Points where what is seen borders on the unseen, (n, 2) [m], and the direction to the unseen side.
 
     They lie along the edge of the shadow between neighbouring beams whose ranges differ by more than
@@ -159,7 +183,7 @@ def unseen_rim(
     sight = view.sight
     heading = view.fan.angles + view.pose.heading
     ends = view.origin + view.directions * sight[:, None]
-    beside = np.convolve(~view.open_beams, np.ones(7), mode="same") > 0
+    beside = np.convolve(~view.open_beams, np.ones(13), mode="same") > 0
     closer = np.hypot(*(ends - goal).T) < record
     closer[1::4] = closer[2::4] = closer[3::4] = False
     far = np.flatnonzero(view.open_beams & (beside | closer))

@@ -25,9 +25,7 @@ EDGE_PROBES = (0.25, 0.5, 0.75)
 """Where along an edge its visibility is probed."""
 
 
-def sample_fan(
-    view: View, draws: FloatArray, centre: float, half: float, margin: float
-) -> FloatArray:
+def sample_fan(view: View, draws: FloatArray, centre: float, half: float, margin: float) -> FloatArray:
     """Points of the visible region inside the fan, (n, 2) float64 [m], map frame.
 
     draws: (n, 2) uniform in [0, 1): direction, and radius as a share of the free range. centre, half:
