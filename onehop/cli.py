@@ -125,53 +125,6 @@ def elect(
 
 
 @app.command()
-def diff(
-    a: Annotated[Path, Argument(help="A log.")],
-    b: Annotated[Path, Argument(help="Another log.")],
-    as_json: AsJson = False,
-) -> None:
-    """First difference of two logs: tick, topic, field, both values.
-
-    Example: onehop diff runs/a/mission.mcap runs/b/mission.mcap
-    """
-    from onehop.commands import diff as command
-
-    _leave(command.diff(a, b, as_json))
-
-
-@app.command()
-def salvage(
-    torn: Annotated[Path, Argument(help="A log whose recorder died.")],
-    out: Annotated[Path, Option("-o", "--out", help="The sound log to write.")],
-    as_json: AsJson = False,
-) -> None:
-    """A sound log from a torn one; says what was lost.
-
-    Example: onehop salvage torn.mcap -o sound.mcap
-    """
-    from onehop.commands import salvage as command
-
-    _leave(command.salvage(torn, out, as_json))
-
-
-@app.command()
-def explain(
-    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
-    robot: Annotated[int, Option(help="Which robot.")],
-    at_s: Annotated[float, Option("--at", help="When, in simulated seconds.")],
-    window_s: Annotated[float, Option("--window", help="Seconds before that to look at.")] = 5.0,
-    as_json: AsJson = False,
-) -> None:
-    """Why a robot did that: its mode, the frames that it got or missed and why, its gain, its error.
-
-    Example: onehop explain runs/demo/mission.mcap --robot 5 --at 61.5
-    """
-    from onehop.commands import explain as command
-
-    _leave(command.explain(log, robot, at_s, window_s, as_json))
-
-
-@app.command()
 def link(
     distance: Annotated[
         str, Option(metavar="A,B,C", help="Distances [m].")
