@@ -212,8 +212,10 @@ class MrsrRouter:
         """Send whatever waited for a route that the cache has now (RFC 4728, 8.2.6)."""
         for target in sorted(self._searches):
             if self.cache.find(target, now) is not None:
-                for data in tuple(self._searches[target].waiting):
+                found = tuple(self._searches[target].waiting)
+                for data in found:
                     self._take_out(data, now)
+                for data in found:
                     self.submit(data, now)
 
     # Requests and replies of others.
