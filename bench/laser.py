@@ -21,7 +21,7 @@ from world_server.core.walls import FloatArray, WallMap
 BODY = RobotSection()
 SIDE = 100.0
 BATCH = 50
-REPEATS = 7
+BUDGET_S = 2.0
 
 
 def blocks(count: int, size: float, random: np.random.Generator) -> tuple[tuple[Point, ...], ...]:
@@ -80,10 +80,10 @@ def embree(segments: FloatArray, poses: FloatArray, fan: FloatArray) -> Callable
 
 
 def scan_us(batch: Callable[[], object], scans: int) -> float:
-    """Best time of one scan over REPEATS batches [us]."""
+    """Best time of one scan over the batches that fit into BUDGET_S [us]: the least disturbed one."""
     batch()
-    best = math.inf
-    for _ in range(REPEATS):
+    best, end = math.inf, time.perf_counter() + BUDGET_S
+    while time.perf_counter() < end:
         begin = time.perf_counter()
         batch()
         best = min(best, time.perf_counter() - begin)
@@ -104,7 +104,7 @@ def compare(name: str, count: int, size: float) -> dict[str, object]:
     exact = np.array([brute_force(walls.segments, pose, fan) for pose in poses])
     found = Laser(walls, alone).scans(poses, looking)
     both = np.isfinite(exact) & np.isfinite(found)
-    ours = scan_us(lambda: [laser.scans(poses, looking) for _ in range(20)], 20 * len(poses))
+    ours = scan_us(lambda: laser.scans(poses, looking), len(poses))
     peer = embree(walls.segments, poses, fan)
     embree_us = None if peer is None else scan_us(peer, len(poses))
     numpy_us = scan_us(lambda: [brute_force(walls.segments, pose, fan) for pose in poses], len(poses))

@@ -30,6 +30,22 @@ class Driver(StrEnum):
     INLINE = "inline"
 
 
+class Preset(StrEnum):
+    THESIS = "thesis"
+    PHYSICAL = "physical"
+
+
+class Planner(StrEnum):
+    ESCAPE = "escape"
+    MODIFIED = "modified"
+    ORIGINAL = "original"
+
+
+class Film(StrEnum):
+    GIF = "gif"
+    MP4 = "mp4"
+
+
 Settings = Annotated[
     list[str],
     Option("--set", metavar="KEY.PATH=VALUE", help="Change a key of the scenario (repeatable)."),
@@ -109,6 +125,68 @@ def elect(
 
 
 @app.command()
+def link(
+    distance: Annotated[
+        str, Option(metavar="A,B,C", help="Distances [m].")
+    ] = "1,5,8,10,12,15,20,25,30,40",
+    preset: Annotated[Preset, Option(help="Propagation.")] = Preset.THESIS,
+    rate: Annotated[float, Option(help="1, 2, 5.5 or 11 Mb/s.")] = 1.0,
+    msdu: Annotated[int, Option(help="Payload of a frame [B].")] = 800,
+    seed: Annotated[int, Option(help="Seed of fading and backoff.")] = 1,
+    seconds: Annotated[float, Option(help="Simulated time measured at each distance.")] = 20.0,
+    as_json: AsJson = False,
+) -> None:
+    """Link budget over distance: SNR, error rates, throughput.
+
+    Example: onehop link --distance 5,10,20 --preset thesis
+    """
+    from onehop.commands import link as command
+
+    _leave(command.link(distance, preset.value, rate, msdu, seed, seconds, as_json))
+
+
+@app.command()
+def saturate(
+    stations: Annotated[int, Option(help="Stations that always have a message.")] = 6,
+    rts: Annotated[bool, Option("--rts/--basic", help="With or without RTS/CTS.")] = True,
+    rate: Annotated[float, Option(help="1, 2, 5.5 or 11 Mb/s.")] = 1.0,
+    msdu: Annotated[int, Option(help="Payload of a frame [B].")] = 800,
+    seed: Annotated[int, Option(help="Seed of the backoff.")] = 1,
+    seconds: Annotated[float, Option(help="Simulated time.")] = 20.0,
+    as_json: AsJson = False,
+) -> None:
+    """Throughput of saturated stations in one cell, beside Bianchi's formula.
+
+    Example: onehop saturate --stations 10 --basic
+    """
+    from onehop.commands import link as command
+
+    _leave(command.saturate(stations, rts, rate, msdu, seed, seconds, as_json))
+
+
+@app.command()
+def plan(
+    map_file: Annotated[Path, Argument(metavar="MAP", help=".toml, ROS .yaml or MovingAI .map.")],
+    start: Annotated[str | None, Option(metavar="X,Y", help="Where it starts [m].")] = None,
+    goal: Annotated[str | None, Option(metavar="X,Y", help="Where it goes [m].")] = None,
+    planner: Annotated[Planner | None, Option(help="How it finds its way.")] = None,
+    seed: Annotated[int | None, Option(help="Seed of its samples.")] = None,
+    cell: Annotated[float | None, Option(help="Metres a cell of a MovingAI grid.")] = None,
+    settings: Settings = [],  # noqa: B006
+    figure: Annotated[Path | None, Option(help="Draw map, samples, road maps and path (.png).")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """One leader alone finds its way in a map that it does not know.
+
+    Example: onehop plan scenarios/map1.toml --planner escape --figure plan.png
+    """
+    from onehop.commands import plan as command
+
+    kind = None if planner is None else planner.value
+    _leave(command.plan(map_file, start, goal, kind, seed, cell, settings, figure, as_json))
+
+
+@app.command()
 def doctor(as_json: AsJson = False) -> None:
     """Is everything here that a run needs? What is missing, and how to get it.
 
@@ -117,6 +195,91 @@ def doctor(as_json: AsJson = False) -> None:
     from onehop.commands import doctor as command
 
     _leave(command.doctor(as_json))
+
+
+@app.command()
+def report(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    out: Annotated[
+        Path | None, Option(help="Folder for page and figures (default: beside the log).")
+    ] = None,
+    film: Annotated[Film | None, Option(help="Make a film of the mission, too.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Show a mission on one self-contained page, with every figure as PNG and SVG.
+
+    Example: onehop report runs/demo/mission.mcap --film gif
+    """
+    from onehop.commands import report as command
+
+    _leave(command.report(log, out, film.value if film else None, as_json))
+
+
+@app.command()
+def explain(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    robot: Annotated[int, Option(help="Which robot.")],
+    at_s: Annotated[float, Option("--at", help="At which simulated time [s].")],
+    window_s: Annotated[
+        float, Option("--window", help="Tell messages of this long before it [s].")
+    ] = 6.0,
+    as_json: AsJson = False,
+) -> None:
+    """Why a robot did what it did: its mode, what it heard and missed, its k_rho, its error.
+
+    Example: onehop explain runs/demo/mission.mcap --robot 5 --at 63.5
+    """
+    from onehop.commands import explain as command
+
+    _leave(command.explain(log, robot, at_s, window_s, as_json))
+
+
+@app.command()
+def diff(
+    a: Annotated[Path, Argument(help="One log.")],
+    b: Annotated[Path, Argument(help="Another log.")],
+    as_json: AsJson = False,
+) -> None:
+    """The first difference of two logs: tick, topic, field, both values.
+
+    Example: onehop diff runs/a/mission.mcap runs/b/mission.mcap
+    """
+    from onehop.commands import diff as command
+
+    _leave(command.diff(a, b, as_json))
+
+
+@app.command()
+def salvage(
+    torn: Annotated[Path, Argument(help="A log whose recorder was killed, or that is damaged.")],
+    out: Annotated[Path, Option("-o", "--out", metavar="LOG", help="The sound log to write.")],
+    as_json: AsJson = False,
+) -> None:
+    """Make a sound log of a torn one, and say what was lost.
+
+    Example: onehop salvage runs/demo/mission.mcap -o saved.mcap
+    """
+    from onehop.commands import salvage as command
+
+    _leave(command.salvage(torn, out, as_json))
+
+
+@app.command()
+def view(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    out: Annotated[
+        Path | None, Option("-o", "--out", metavar="LOG", help="Write here, not into the log itself.")
+    ] = None,
+    open_viewer: Annotated[bool, Option("--open", help="Start Rerun on it, if installed.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Add what Foxglove and Rerun can show: poses, scans, map, links, events.
+
+    Example: onehop view runs/demo/mission.mcap --open
+    """
+    from onehop.commands import view as command
+
+    _leave(command.view(log, out, open_viewer, as_json))
 
 
 def main() -> NoReturn:

@@ -140,6 +140,35 @@ def bundle_from_json(text: str, files: Mapping[str, bytes], origin: str) -> Bund
     return Bundle(_structure(table, origin), dict(files))
 
 
+def load_map_mission(
+    map_file: Path,
+    start: tuple[float, float] | None,
+    goal: tuple[float, float] | None,
+    settings: Iterable[str],
+    seed: int | None,
+) -> Bundle:
+    """A mission on a bare map, or on that of a scenario, with defaults for the rest.
+
+    Raises ScenarioError; a bare map needs start and goal.
+    """
+    if map_file.suffix == ".toml":
+        return load(map_file, settings, seed, None, start, goal)
+    if start is None or goal is None:
+        raise ScenarioError(str(map_file), "a bare map", "give --start x,y and --goal x,y")
+    table: dict[str, Any] = {
+        "name": map_file.stem,
+        "map": {"file": map_file.name},
+        "start": {"x": start[0], "y": start[1]},
+        "goal": {"x": goal[0], "y": goal[1]},
+    }
+    if seed is not None:
+        table["seed"] = seed
+    for setting in settings:
+        _apply(table, setting)
+    scenario = _structure(table, str(map_file))
+    return Bundle(scenario, _read_map_files(scenario.map.file, map_file.parent, str(map_file)))
+
+
 def changed(scenario: Scenario, settings: Iterable[str]) -> Scenario:
     """The same scenario with some keys changed ("key.path=value"). Raises ScenarioError."""
     table = json.loads(json.dumps(as_map(scenario)))
@@ -189,15 +218,12 @@ def _apply(table: dict[str, Any], setting: str) -> None:
     target: Any = table
     for step in path[:-1]:
         target = _child(target, step, setting)
-    if isinstance(target, list):
-        _child(target, path[-1], setting)
-        target[int(path[-1])] = value
-    else:
-        target[path[-1]] = value
+    _child(target, path[-1], setting)
+    target[int(path[-1]) if isinstance(target, list) else path[-1]] = value
 
 
 def _child(target: Any, step: str, setting: str) -> Any:
-    if isinstance(target, dict):
+    if isinstance(target, dict) and not step.isdigit():
         return target.setdefault(step, {})
     if isinstance(target, list) and step.isdigit() and int(step) < len(target):
         return target[int(step)]
@@ -239,9 +265,7 @@ def _first_mistake(error: BaseException, origin: str, table: Any) -> ScenarioErr
     if isinstance(error, _MismatchError):
         return ScenarioError(where, error.what, error.remedy)
     if isinstance(error, KeyError):
-        return ScenarioError(
-            _where(origin, [*path, f".{error.args[0]}"]), "is missing", "every scenario has to give it"
-        )
+        return ScenarioError(where, "is missing", "every scenario has to give it")
     return ScenarioError(where, f"{value!r:.60} has the wrong form", "see scenarios/map1.toml")
 
 

@@ -13,14 +13,15 @@ Nothing is held in memory but what was asked for; a stretch of time is found wit
 
 import json
 from collections.abc import Iterable, Iterator
+from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
 
-from mcap.exceptions import EndOfFile
-from mcap.records import Footer, Metadata
-from mcap.stream_reader import StreamReader
+from mcap.data_stream import ReadDataStream
+from mcap.opcode import Opcode
+from mcap.records import Metadata
 
-from onehop.analysis.selection import Selected, one_of, select
+from onehop.analysis.selection import Selected, one_of, select, walk
 from onehop.analysis.tables import TABLES, Table, build
 from onehop.contracts import topics
 from onehop.contracts.errors import InputError
@@ -52,13 +53,12 @@ class Log:
 
     def _read_end(self) -> None:
         with self.path.open("rb") as stream:
-            try:
-                for record in StreamReader(stream, emit_chunks=True).records:
-                    if isinstance(record, Metadata) and record.name == "outcome":
+            for opcode, length in walk(stream):
+                if opcode == Opcode.METADATA:
+                    record = Metadata.read(ReadDataStream(BytesIO(stream.read(length))))
+                    if record.name == "outcome":
                         self.summary = json.loads(record.metadata["summary"])
-                    self.torn = not isinstance(record, Footer)
-            except EndOfFile:
-                self.torn = True
+                self.torn = opcode != Opcode.FOOTER
 
     @property
     def robots(self) -> tuple[int, ...]:

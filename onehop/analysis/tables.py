@@ -103,6 +103,16 @@ def _departures(truth: dict[str, Any], _: int) -> Iterator[Row]:
         yield one["robot"], one["why"]
 
 
+def _cuts(truth: dict[str, Any], _: int) -> Iterator[Row]:
+    for one in truth["cuts"]:
+        yield tuple(one["side_a"]), tuple(one["side_b"])
+
+
+def _jams(truth: dict[str, Any], _: int) -> Iterator[Row]:
+    for one in truth["jams"]:
+        yield one["x"], one["y"], one["radius"], one["noise_dbm"]
+
+
 def _scans(seen: dict[str, Any], robot: int) -> Iterator[Row]:
     yield robot, np.frombuffer(seen["scan"], dtype="<f4")
 
@@ -114,7 +124,7 @@ _INTEGERS = frozenset(
     }
 )  # fmt: skip
 _WORDS = frozenset({"mode", "shape", "kind", "fate", "why"})
-_OBJECTS = frozenset({"members", "path", "payload", "data"})
+_OBJECTS = frozenset({"members", "path", "payload", "data", "side_a", "side_b"})
 
 TABLES: dict[str, tuple[str, Rows, tuple[str, ...]]] = {
     "poses": (
@@ -141,6 +151,8 @@ TABLES: dict[str, tuple[str, Rows, tuple[str, ...]]] = {
     "offers": ("truth", _offers, ("robot", "destination", "msdu_bytes", "payload")),
     "contacts": ("truth", _contacts, ("robot", "other", "x", "y")),
     "departures": ("truth", _departures, ("robot", "why")),
+    "cuts": ("truth", _cuts, ("side_a", "side_b")),
+    "jams": ("truth", _jams, ("x", "y", "radius", "noise_dbm")),
     "scans": ("obs/", _scans, ("robot", "ranges")),
 }  # fmt: skip
 """Table -> the bus keys that it is made from, how rows come from one message, and its columns."""

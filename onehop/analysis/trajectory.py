@@ -12,7 +12,7 @@ from matplotlib.patheffects import withStroke
 
 from onehop.analysis.ground import draw_ground
 from onehop.analysis.log import Log
-from onehop.analysis.palette import BAD, FAINT, INK, robot_colours
+from onehop.analysis.palette import BAD, INK, robot_colours
 from onehop.analysis.tables import Table, build
 from onehop.analysis.timeline import Departure, departures, describe_fault, reigns
 from onehop.contracts.messages import Reign
@@ -32,22 +32,22 @@ def draw_trajectory(log: LogFile, path: Path) -> None:
 
     Raises LogError when the log is damaged.
     """
-    figure = trajectory_figure(Log(log))
+    opened = Log(log)
+    figure = figure_of(opened, _tables(opened))
     FigureCanvasAgg(figure)
     figure.savefig(path, dpi=130)
 
 
-def trajectory_figure(log: Log) -> Figure:
-    """The figure itself, not yet bound to a canvas."""
-    tables = _tables(log)
-    figure = Figure(figsize=(10.5, 8.2), layout="constrained")
-    axes = figure.add_subplot()
-    draw_trajectory_on(axes, log, tables)
+def figure_of(log: Log, tables: dict[str, Table]) -> Figure:
+    """The figure, not yet bound to a canvas; tables: poses, status, departures and contacts."""
+    figure = Figure(figsize=(10.5, 8.2))
+    axes = figure.add_axes((0.06, 0.06, 0.68, 0.89))
+    axes.grid(visible=False)
+    _draw(axes, log, tables)
     return figure
 
 
-def draw_trajectory_on(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
-    """Draw a mission on axes; tables: poses, status, departures and contacts."""
+def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
     poses, status = tables["poses"], tables["status"]
     colours = robot_colours(log.robots)
     gone = departures(poses, tables["departures"])
@@ -130,7 +130,7 @@ def _label_time(
     if np.hypot(spot[0] - before[0], spot[1] - before[1]) < 3.0:
         return before
     axes.annotate(
-        f"{time_s:g} s", spot, textcoords="offset points", xytext=(7, 5), fontsize=7.5, color=INK,
+        f"{time_s:.0f} s", spot, textcoords="offset points", xytext=(7, 5), fontsize=7.5, color=INK,
         zorder=9, path_effects=_HALO,
     )  # fmt: skip
     return spot
@@ -212,8 +212,7 @@ def _legend(log: Log, gone: list[Departure], colours: dict[int, str]) -> list[Li
             [],
             [],
             linestyle="none",
-            marker="$!$",
-            color=FAINT,
+            marker="x", markersize=5, color=BAD,
             label=f"{f.at_s:g} s: {describe_fault(f)}",
         )
         for f in log.scenario.faults

@@ -8,6 +8,9 @@ from rich.console import Console
 from rich.table import Table
 
 
+PIPE_WIDTH = 110
+
+
 def emit_json(value: dict[str, Any]) -> None:
     """The one JSON object of `--json`."""
     print(json.dumps(value, indent=1))
@@ -19,7 +22,8 @@ def say(text: str) -> None:
 
 
 def stdout() -> Console:
-    return Console(highlight=False, soft_wrap=not sys.stdout.isatty())
+    """The console of results; wide enough for our tables where there is no terminal to measure."""
+    return Console(highlight=False, width=None if sys.stdout.isatty() else PIPE_WIDTH)
 
 
 def table(title: str, *columns: str) -> Table:

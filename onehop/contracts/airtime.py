@@ -66,3 +66,14 @@ def ideal_throughput_bps(
     return (
         8e6 * msdu_bytes / exchange_us(rate_mbps, msdu_bytes, rts_cts, mac_header_bytes, propagation_us)
     )
+
+
+THESIS_THRESHOLD_BPS = 0.5333e6
+"""Throughput below which the thesis's followers hurry, at 1 Mb/s and 800 B (3.8.3) [bit/s]."""
+
+
+def threshold_bps(rate_mbps: float, msdu_bytes: int, propagation_us: float = 0.0) -> float:
+    """The same share of the ideal throughput at any rate and size, 0.684 [bit/s] (radio.md)."""
+    share = THESIS_THRESHOLD_BPS / ideal_throughput_bps(1.0, 800)
+    ideal = ideal_throughput_bps(rate_mbps, msdu_bytes, propagation_us=propagation_us)
+    return share * ideal

@@ -210,7 +210,8 @@ class PlannerSection:
     """Way-finding of the leader (thesis 3.4). inflation: clearance kept from obstacles [m].
 
     samples: points a road map. classify_range: obstacles nearer than this turn the fan [m].
-    memory: way points that `escape` can remember.
+    memory: way points that `escape` can remember. patience: distance that it may search without coming
+    closer to the goal, in laser ranges.
     """
 
     kind: Literal["escape", "modified", "original"] = "escape"
@@ -218,9 +219,10 @@ class PlannerSection:
     inflation: float = 0.5
     classify_range: float = 3.0
     memory: int = 1024
+    patience: float = 20.0
 
     def problems(self) -> Iterator[Problem]:
-        yield from _positive(self, "samples", "inflation", "classify_range", "memory")
+        yield from _positive(self, "samples", "inflation", "classify_range", "memory", "patience")
 
 
 @dataclass(frozen=True, slots=True)

@@ -105,7 +105,6 @@ def _make_converter(detailed: bool) -> cattrs.Converter:
     for enum in (Mode, Shape, Fate):
         converter.register_structure_hook(enum, _structure_enum)
         converter.register_unstructure_hook(enum, operator.attrgetter("value"))
-    converter.register_unstructure_hook(float, float)
     converter.register_structure_hook_func(_is_array, _structure_ranges)
     converter.register_unstructure_hook_func(_is_array, _unstructure_ranges)
     converter.register_structure_hook_func(_is_note_value, _structure_note_value)

@@ -5,6 +5,7 @@ the last, unfinished record is missing. `LogFile.torn` says so after the message
 """
 
 import json
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,7 +88,7 @@ class LogFile:
                 for record in StreamReader(stream, validate_crcs=True).records:
                     ended = ended or isinstance(record, Footer)
                     yield record
-            except McapError as error:
+            except (McapError, struct.error) as error:  # the file ends within a record
                 if isinstance(error, InvalidMagic):
                     raise LogError(str(self.path), "not an MCAP file", "give a .mcap log") from None
             except (ValueError, ZstdError) as error:

@@ -1,15 +1,13 @@
-"""The distributed coordination function of 802.11, event by event (802.11-1999, 9.2).
+"""The distributed coordination function of 802.11: exchanges, retries, queues (802.11-1999, 9.2).
 
-Carrier sense, backoff that freezes while the medium is busy, RTS/CTS or basic access, retries with a
-growing window, and the event queue that everything above shares. Stations are indices.
+Here is also the event queue that everything above shares. Stations are indices.
 
-Differs: a station that finds the medium idle waits a whole DIFS from that moment, because both measured
-references (ns-3's idle exchange of 7.542 ms, thesis eq. 3.16) count it. A frame handed over in the same
-instant as another station's draws a backoff, because ticks would otherwise make them collide always.
+An exchange that nobody can disturb is taken in three events instead of eight: every station senses both
+of its ends, nothing else is on the air, nobody is about to speak, and it ends before the horizon. Its
+frames are judged as ever; only the gaps of a SIFS, in which nobody may speak, are not played.
 """
 
 import heapq
-from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -17,33 +15,12 @@ from typing import Any, Protocol
 from onehop.contracts.airtime import ACK_BYTES, RTS_BYTES
 from onehop.contracts.messages import Fate
 from radio_proxy.core.airtime import Timing, delay_ns
+from radio_proxy.core.contention import EVERYONE, NEVER, Contention, Frame, Station
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.medium import Emission, Medium, Reservation
 
-EVERYONE = -1
-"""Receiver of a broadcast frame."""
-
-NEVER = 1 << 62
-
 Event = Callable[[Any, int], None]
-
-
-@dataclass(slots=True, eq=False)
-class Frame:
-    """One MSDU for one hop. receiver: station index or EVERYONE; packet: opaque to this layer.
-
-    service_start: when it became the head of its queue [ns]. sinr_db, cause: of the last frame of its
-    exchange that was judged at a receiver.
-    """
-
-    receiver: int
-    msdu_bytes: int
-    packet: object
-    service_start: int = -1
-    attempts: int = 0
-    received: bool = False
-    sinr_db: float = 0.0
-    cause: Fate | None = None
+Judgement = tuple[Fate | None, float]
 
 
 class Listener(Protocol):
@@ -57,27 +34,11 @@ class Listener(Protocol):
 
 
 @dataclass(slots=True, eq=False)
-class Station:
-    """A network card. slots: backoff left. access: when it will speak, NEVER while frozen [ns].
-
-    idle_start: from when its DIFS counts [ns]. fresh: its head found the medium idle, so it has drawn
-    no backoff yet. gone: its robot left; events that still name it are void.
-    """
-
-    index: int
-    queue: deque[Frame] = field(default_factory=deque)
-    frame: Frame | None = None
-    slots: int = 0
-    access: int = NEVER
-    idle_start: int = 0
-    contending: bool = False
-    fresh: bool = False
-    gone: bool = False
-
-
-@dataclass(slots=True, eq=False)
 class Exchange:
-    """One attempt to send a frame: who, to whom, over what distance, with which fading."""
+    """One attempt to send a frame: who, to whom, over what distance, with which fading.
+
+    quiet: nobody can disturb it. foreseen: frames that were judged before they end.
+    """
 
     sender: Station
     receiver: Station
@@ -85,6 +46,8 @@ class Exchange:
     delay: int
     fade_db: float | None
     emission: Emission
+    quiet: bool = False
+    foreseen: list[Judgement] = field(default_factory=list)
 
 
 class Dcf:
@@ -102,21 +65,21 @@ class Dcf:
         queue_frames: int,
         rts_threshold_bytes: int,
         fade_per_exchange: bool,
+        take_shortcuts: bool = True,
     ) -> None:
         self.timing = timing
         self.medium = medium
-        self._draws = draws
         self._listener = listener
         self._retry_limit = retry_limit
         self._queue_frames = queue_frames
         self._rts_threshold_bytes = rts_threshold_bytes
         self._fade_per_exchange = fade_per_exchange
+        self._take_shortcuts = take_shortcuts
         self._stations = [Station(i) for i in range(count)]
-        self._contenders: list[Station] = []
-        self._next_access = NEVER
-        self._next_station: Station | None = None
+        self._contention = Contention(timing, medium, draws)
         self._events: list[tuple[int, int, Event, Any]] = []
         self._sequence = 0
+        self._horizon = 0
 
     def at(self, time_ns: int, event: Event, argument: Any) -> None:
         """Call event(argument, time_ns) at that time; events of one instant in order of this call."""
@@ -125,15 +88,14 @@ class Dcf:
 
     def run(self, until: int) -> None:
         """Everything that happens up to and including `until` [ns]."""
-        events = self._events
+        self._horizon = until
+        events, contention = self._events, self._contention
         while True:
             time_ns = events[0][0] if events else NEVER
-            if self._next_access < time_ns:
-                if self._next_access > until:
+            if contention.next_access < time_ns:
+                if contention.next_access > until:
                     return
-                station = self._next_station
-                assert station is not None
-                self._on_access(station, self._next_access)
+                self._on_access(contention.next_access)
             else:
                 if time_ns > until:
                     return
@@ -155,8 +117,7 @@ class Dcf:
         station = self._stations[index]
         station.gone = True
         if station.contending:
-            self._contenders.remove(station)
-            self._reschedule()
+            self._contention.leave(station)
         self._stations[index] = Station(index)
         head = [] if station.frame is None else [station.frame]
         return head + list(station.queue)
@@ -166,80 +127,21 @@ class Dcf:
         station.frame = frame = station.queue.popleft()
         frame.service_start = now
         self._listener.on_service(station.index, frame, now)
-        if station.contending:
-            return
-        busy = self.medium.is_busy(station.index)
-        if hold_back or busy or self.medium.reserved_until(station.index, now) > now:
-            station.slots = self._draws.slots(self.timing.window(0))
-        else:
-            station.slots = 0
-            station.fresh = True
-        self._contend(station, now)
+        if not station.contending:
+            self._contention.join_with_frame(station, now, hold_back)
 
-    def _contend(self, station: Station, now: int) -> None:
-        station.contending = True
-        self._contenders.append(station)
-        station.access = NEVER
-        if not self.medium.is_busy(station.index):
-            self._resume(station, now)
-        self._reschedule()
-
-    def _resume(self, station: Station, now: int) -> None:
-        station.idle_start = start = self.medium.reserved_until(station.index, now)
-        station.access = start + self.timing.difs + station.slots * self.timing.slot
-
-    def _freeze(self, station: Station, emission: Emission, now: int) -> None:
-        """The medium turned busy: keep the slots that have not passed (802.11-1999, 9.2.5.2)."""
-        elapsed = now - station.idle_start - self.timing.difs
-        if elapsed > 0:
-            station.slots -= elapsed // self.timing.slot
-        if station.fresh and emission.source != station.index:
-            station.fresh = False
-            station.slots = self._draws.slots(self.timing.window(0))
-        station.access = NEVER
-
-    def _reschedule(self) -> None:
-        self._next_access = NEVER
-        for station in self._contenders:
-            if station.access < self._next_access:
-                self._next_access = station.access
-                self._next_station = station
-
-    def _begin(self, station: Station, fade_db: float | None, now: int) -> Emission:
-        """Start to emit; everyone who senses it freezes, except who is about to speak itself."""
-        emission = self.medium.begin(station.index, fade_db)
-        committed = now + self.timing.turnaround
-        for other in self._contenders:
-            if committed < other.access < NEVER and self.medium.senses(other.index, emission):
-                self._freeze(other, emission, now)
-        self._reschedule()
-        return emission
-
-    def _end(self, emission: Emission, now: int, answerer: int = EVERYONE) -> None:
-        """Stop to emit; who finds the medium idle goes on, except who will sense the answer at once."""
-        self.medium.end(emission)
-        row = self.medium.field.row(answerer) if answerer != EVERYONE else None
-        sense_db = self.medium.field.budget.carrier_sense_db
-        for other in self._contenders:
-            if other.access != NEVER or (row is not None and row[other.index] >= sense_db):
-                continue
-            if not self.medium.is_busy(other.index):
-                self._resume(other, now)
-        self._reschedule()
-
-    def _on_access(self, station: Station, now: int) -> None:
+    def _on_access(self, now: int) -> None:
         """A station's wait is over: it speaks, or it has only finished its backoff after a success."""
-        station.contending = station.fresh = False
-        station.slots = 0
-        station.access = NEVER
-        self._contenders.remove(station)
+        station = self._contention.take_next()
         frame = station.frame
         if frame is None:
-            self._reschedule()
+            self._contention.on_silence()
             return
         frame.attempts += 1
         fade_db = self.medium.fade_db() if self._fade_per_exchange else None
+        alone = not self.medium.on_air
         emission = self._begin(station, fade_db, now)
+        alone = alone and self._contention.next_access > now + self.timing.turnaround
         if frame.receiver == EVERYONE:
             delay = delay_ns(self.medium.field.farthest(station.index))
             end = now + self.timing.broadcast(frame.msdu_bytes) + delay
@@ -249,10 +151,56 @@ class Dcf:
         receiver = self._stations[frame.receiver]
         delay = delay_ns(self.medium.field.distance(station.index, receiver.index))
         exchange = Exchange(station, receiver, frame, delay, fade_db, emission)
-        if frame.msdu_bytes > self._rts_threshold_bytes:
-            self.at(now + self.timing.rts + delay, self._on_rts_end, exchange)
+        self._open(exchange, alone, now)
+
+    def _open(self, exchange: Exchange, alone: bool, now: int) -> None:
+        """Begin with RTS or data; a quiet exchange goes straight to the end of its data."""
+        timing, frame = self.timing, exchange.frame
+        asks = frame.msdu_bytes > self._rts_threshold_bytes
+        question = timing.rts + timing.cts + 2 * (timing.sifs + exchange.delay) if asks else 0
+        data_end = now + question + timing.data(frame.msdu_bytes) + exchange.delay
+        if alone and self._take_shortcuts:
+            end = data_end + timing.sifs + timing.ack + exchange.delay
+            exchange.quiet = self._is_quiet(exchange, now, end)
+        if not asks or (exchange.quiet and self._is_cleared(exchange)):
+            self.at(data_end, self._on_data_end, exchange)
         else:
-            self.at(now + self.timing.data(frame.msdu_bytes) + delay, self._on_data_end, exchange)
+            self.at(now + timing.rts + exchange.delay, self._on_rts_end, exchange)
+
+    def _is_quiet(self, exchange: Exchange, now: int, end: int) -> bool:
+        """Whether nobody can disturb the exchange before its end, and no reservation forbids it."""
+        place, receiver = self.medium.field, exchange.receiver.index
+        return (
+            end <= self._horizon
+            and place.is_sensed_by_all(exchange.sender.index)
+            and place.is_sensed_by_all(receiver)
+            and self.medium.reserved_until(receiver, now) <= now
+        )
+
+    def _is_cleared(self, exchange: Exchange) -> bool:
+        """Judge RTS and CTS of a quiet exchange in advance; if one fails, they are played out."""
+        rate_mbps = self.timing.basic_rate_mbps
+        emission, receiver, sender = exchange.emission, exchange.receiver.index, exchange.sender.index
+        rts = self.medium.receive(emission, receiver, rate_mbps, 8 * RTS_BYTES)
+        exchange.foreseen.append(rts)
+        if rts[0] is None:
+            answer = Emission(receiver, self.medium.field.row(receiver), exchange.fade_db)
+            cts = self.medium.receive(answer, sender, rate_mbps, 8 * ACK_BYTES)
+            exchange.foreseen.append(cts)
+            if cts[0] is None:
+                exchange.foreseen.clear()
+                return True
+        exchange.quiet = False
+        return False
+
+    def _begin(self, station: Station, fade_db: float | None, now: int) -> Emission:
+        emission = self.medium.begin(station.index, fade_db)
+        self._contention.on_busy(emission, now)
+        return emission
+
+    def _end(self, emission: Emission, now: int, answerer: int = EVERYONE) -> None:
+        self.medium.end(emission)
+        self._contention.on_idle(now, None if answerer == EVERYONE else self.medium.field.row(answerer))
 
     def _on_broadcast_end(self, exchange: Exchange, now: int) -> None:
         sender = exchange.sender
@@ -264,12 +212,15 @@ class Dcf:
 
     def _hears(self, exchange: Exchange, at: Station, rate_mbps: float, size_bytes: int) -> bool:
         """Judge the frame on the air at one end of the exchange, and remember what kept it away."""
+        frame = exchange.frame
         if exchange.sender.gone or exchange.receiver.gone:
-            exchange.frame.cause = Fate.RECEIVER_GONE
-            return False
-        cause, sinr_db = self.medium.receive(exchange.emission, at.index, rate_mbps, 8 * size_bytes)
-        exchange.frame.cause, exchange.frame.sinr_db = cause, sinr_db
-        return cause is None
+            frame.cause = Fate.RECEIVER_GONE
+        elif exchange.foreseen:
+            frame.cause, frame.sinr_db = exchange.foreseen.pop(0)
+        else:
+            judged = self.medium.receive(exchange.emission, at.index, rate_mbps, 8 * size_bytes)
+            frame.cause, frame.sinr_db = judged
+        return frame.cause is None
 
     def _reserve(self, exchange: Exchange, now: int, frames: int, airtime: int) -> Reservation:
         """The duration field: so many frames of so much airtime are still to come in this exchange."""
@@ -296,10 +247,7 @@ class Dcf:
 
     def _on_reservation_unused(self, reservation: Reservation, now: int) -> None:
         self.medium.release(reservation)
-        for station in self._contenders:
-            if station.idle_start > now and station.access != NEVER:
-                self._resume(station, now)
-        self._reschedule()
+        self._contention.on_reservation_unused(now)
 
     def _send_cts(self, exchange: Exchange, now: int) -> None:
         if self._answer(exchange, exchange.receiver, now):
@@ -326,17 +274,23 @@ class Dcf:
         timing, receiver, frame = self.timing, exchange.receiver, exchange.frame
         size_bytes = timing.mac_header_bytes + frame.msdu_bytes
         heard = self._hears(exchange, receiver, timing.rate_mbps, size_bytes)
-        if not exchange.sender.gone:
+        if not exchange.quiet or not heard:
             self._reserve(exchange, now, 1, timing.ack)
         if not heard:
             self._end(exchange.emission, now)
             self.at(now - exchange.delay + timing.answer_timeout, self._on_timeout, exchange)
             return
-        self.at(now + timing.sifs, self._send_ack, exchange)
-        self._end(exchange.emission, now, receiver.index)
+        if exchange.quiet:
+            self.medium.end(exchange.emission)
+        else:
+            self.at(now + timing.sifs, self._send_ack, exchange)
+            self._end(exchange.emission, now, receiver.index)
         if not frame.received:
             frame.received = True
             self._listener.on_received(receiver.index, exchange.sender.index, frame, now)
+        if exchange.quiet:
+            exchange.emission = self._begin(receiver, exchange.fade_db, now)
+            self.at(now + timing.sifs + timing.ack + exchange.delay, self._on_ack_end, exchange)
 
     def _send_ack(self, exchange: Exchange, now: int) -> None:
         if self._answer(exchange, exchange.receiver, now):
@@ -368,8 +322,7 @@ class Dcf:
         if sender.gone:
             return
         if frame.attempts < self._retry_limit:
-            sender.slots = self._draws.slots(self.timing.window(frame.attempts))
-            self._contend(sender, now)
+            self._contention.join(sender, frame.attempts, now)
             return
         self._finish(sender, now)
         self._listener.on_undeliverable(sender.index, frame, now)
@@ -380,8 +333,7 @@ class Dcf:
         frame = station.frame
         assert frame is not None
         station.frame = None
-        station.slots = self._draws.slots(self.timing.window(0))
-        self._contend(station, now)
+        self._contention.join(station, 0, now)
         return frame
 
     def _serve_next(self, station: Station, now: int) -> None:

@@ -8,7 +8,7 @@ import math
 from functools import lru_cache
 
 CERTAIN_SINR_DB = 20.0
-"""From here on every 802.11b rate loses less than 1e-12 of its frames: no draw is needed."""
+"""From here on every 802.11b rate loses less than 1e-12 of its frames, which counts as none: no draw."""
 
 _STEP = 0.01
 """Step of the integral over the CCK noise [standard deviations]; halving it moves nothing above 1e-9."""
@@ -56,13 +56,13 @@ def cck11_symbol_error(sinr: float) -> float:
 
 def bit_error_rate(rate_mbps: float, sinr_db: float) -> float:
     """Bit error rate at a rate; for CCK the rate that gives the same frame success bit by bit."""
+    if sinr_db >= CERTAIN_SINR_DB:
+        return 0.0
     sinr = 10.0 ** (sinr_db / 10.0)
     if rate_mbps == 1.0:
         return dbpsk_ber(sinr)
     if rate_mbps == 2.0:
         return dqpsk_ber(sinr)
-    if sinr_db >= CERTAIN_SINR_DB:
-        return 0.0
     if rate_mbps == 5.5:
         return -math.expm1(math.log1p(-min(cck55_symbol_error(sinr), 1.0 - 1e-15)) / 4.0)
     return -math.expm1(math.log1p(-min(cck11_symbol_error(sinr), 1.0 - 1e-15)) / 8.0)

@@ -48,6 +48,7 @@ class Medium:
         self.field = place
         self.on_air: list[Emission] = []
         self._reservations: list[Reservation] = []
+        self.reserved_to = 0
         self._draws = draws
         self._sense_db = place.budget.carrier_sense_db
         self._threshold_db = place.budget.receive_threshold_db
@@ -70,10 +71,6 @@ class Medium:
         """Take a frame off the air."""
         self.on_air.remove(emission)
 
-    def senses(self, station: int, emission: Emission) -> bool:
-        """Whether a station's carrier sense reports this emission (its own always)."""
-        return emission.row[station] >= self._sense_db
-
     def is_busy(self, station: int) -> bool:
         """Physical carrier sense (802.11-1999, 15.4.8.4, mode 2: jams carry no DSSS signal)."""
         return any(emission.row[station] >= self._sense_db for emission in self.on_air)
@@ -85,6 +82,7 @@ class Medium:
         self._reservations = [r for r in self._reservations if r.until > now]
         reservation = Reservation(until, emission, source, receiver)
         self._reservations.append(reservation)
+        self.reserved_to = max(self.reserved_to, until)
         return reservation
 
     def release(self, reservation: Reservation) -> None:
@@ -95,6 +93,8 @@ class Medium:
     def reserved_until(self, station: int, now: int) -> int:
         """End of the reservations that a station heard, `now` when there is none [ns]."""
         until = now
+        if self.reserved_to <= now:
+            return now
         for reservation in self._reservations:
             if (
                 reservation.until > until
@@ -111,19 +111,21 @@ class Medium:
 
         RETRY_LIMIT stands for a collision: without the others the frame would have been received.
         """
-        fade = self.fade_db() if emission.fade_db is None else emission.fade_db
-        sinr_db = self._mean_sinr_db(emission, station) + fade
-        if emission.row[station] <= SILENT_DB:
+        mean_db = emission.row[station]
+        if mean_db <= SILENT_DB:
             return Fate.BELOW_THRESHOLD, SILENT_DB
+        fade_db = self.fade_db() if emission.fade_db is None else emission.fade_db
+        alone_db = mean_db + fade_db - self.field.noise_rise_db[station]
+        sinr_db = alone_db
+        if emission.overlaps:
+            sinr_db = self._mean_sinr_db(emission, station) + fade_db
         if sinr_db < self._threshold_db:
-            alone = emission.row[station] + fade - self.field.noise_rise_db[station]
-            collided = emission.overlaps and alone >= self._threshold_db
+            collided = alone_db >= self._threshold_db
             return (Fate.RETRY_LIMIT if collided else Fate.BELOW_THRESHOLD), sinr_db
         if sinr_db >= CERTAIN_SINR_DB:
             return None, sinr_db
-        if self._draws.uniform() >= frame_success(rate_mbps, sinr_db, bits):
-            return Fate.BIT_ERRORS, sinr_db
-        return None, sinr_db
+        lost = self._draws.uniform() >= frame_success(rate_mbps, sinr_db, bits)
+        return (Fate.BIT_ERRORS if lost else None), sinr_db
 
     def _mean_sinr_db(self, emission: Emission, station: int) -> float:
         rise_db = self.field.noise_rise_db[station]

@@ -1,6 +1,6 @@
 """A data message on its way from robot to robot, and what is on record about it until it is settled."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from onehop.contracts.messages import Fate, Verdict
 from radio_proxy.core.propagation import SILENT_DB
@@ -14,7 +14,8 @@ class Message:
     """One message of one robot. Times in ns, -1 until they are known.
 
     copies: how many robots hold it (an acknowledgement that is lost leaves two). searching_since: start
-    of the discovery that it waits for; searches: how many there were.
+    of the discovery that it waits for; searches: how many there were. loss: the copy
+    that was given up last, and why.
     """
 
     number: int
@@ -25,6 +26,7 @@ class Message:
     offered: int
     copies: int = 1
     settled: bool = False
+    loss: "tuple[Data, Fate] | None" = None
     first_service: int = -1
     discovery: int = 0
     discovery_before_service: int = 0
@@ -77,9 +79,9 @@ class Message:
         )
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, eq=False)
 class Data:
-    """A copy of a message in the hands of one robot. path, attempts: how it came there.
+    """A copy of a message in the hands of one robot, never changed. path, attempts: how it came there.
 
     route, salvaged: the source route that it carries and how often it was mended (MRSR).
     """
@@ -92,8 +94,10 @@ class Data:
 
     def tried(self, attempts: int) -> "Data":
         """The same copy after that many attempts at the next hop."""
-        return replace(self, attempts=(*self.attempts, attempts))
+        tried = (*self.attempts, attempts)
+        return Data(self.message, self.path, tried, self.route, self.salvaged)
 
     def moved(self, holder: int, attempts: int) -> "Data":
         """The copy that the next robot holds."""
-        return replace(self, path=(*self.path, holder), attempts=(*self.attempts, attempts))
+        path, tried = (*self.path, holder), (*self.attempts, attempts)
+        return Data(self.message, path, tried, self.route, self.salvaged)

@@ -6,12 +6,13 @@ the fading X is drawn by the medium.
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from onehop.contracts.messages import Cut, Jam, Presence
 from onehop.contracts.scenario import RadioSection
 
-SPEED_OF_LIGHT = 299_792_458.0
+WAVE_SPEED = 3.0e8
+"""Rounded as in the sums that the thesis's and ns-3's path losses come from [m/s]."""
 
 SILENT_DB = -200.0
 """SNR of what cannot be heard at all: cut off, absent, or out of reach [dB]."""
@@ -44,6 +45,10 @@ class LinkBudget:
         ratio = max(distance / self.reference_distance, 1.0)
         return self.snr_reference_db - 10.0 * self.exponent * math.log10(ratio)
 
+    def without_fading(self) -> "LinkBudget":
+        """The same budget with every frame at its mean SNR."""
+        return replace(self, shadowing_db=0.0)
+
     @property
     def reach(self) -> float:
         """Distance beyond which nothing is heard and nothing disturbed [m]."""
@@ -53,7 +58,7 @@ class LinkBudget:
 
 def free_space_loss_db(distance: float, frequency_hz: float) -> float:
     """Friis loss at a distance [m] (40.046 dB at 1 m, 2.4 GHz)."""
-    return 20.0 * math.log10(4.0 * math.pi * distance * frequency_hz / SPEED_OF_LIGHT)
+    return 20.0 * math.log10(4.0 * math.pi * distance * frequency_hz / WAVE_SPEED)
 
 
 _PRESETS: dict[str, dict[str, float]] = {
@@ -61,7 +66,7 @@ _PRESETS: dict[str, dict[str, float]] = {
     "thesis": {
         "tx_power_dbm": 10.0 * math.log10(200.0),
         "path_loss_exponent": 2.0,
-        "noise_dbm": -77.035,
+        "noise_dbm": 10.0 * math.log10(200.0) - free_space_loss_db(1.0, 2.4e9) - 60.0,
     },
     # 15 dBm and a noise figure of 7 dB: what a laptop card of 802.11b has.
     "physical": {
@@ -103,7 +108,9 @@ Wall = tuple[float, float, float, float]
 
 
 def walls_crossed(walls: tuple[Wall, ...], x0: float, y0: float, x1: float, y1: float) -> int:
-    """How many wall segments the straight path between two points crosses."""
+    """How many wall segments the straight path between two points crosses, whichever way it is taken."""
+    if (x0, y0) > (x1, y1):
+        x0, y0, x1, y1 = x1, y1, x0, y0
     count = 0
     for ax, ay, bx, by in walls:
         side_a = (x1 - x0) * (ay - y0) - (y1 - y0) * (ax - x0)
@@ -126,6 +133,7 @@ class Field:
         self._walls = walls if budget.wall_loss_db else ()
         self._place: dict[int, tuple[float, float]] = {}
         self._rows: dict[int, list[float]] = {}
+        self._sensed_by_all: dict[int, bool] = {}
         self._cells: dict[tuple[int, int], list[int]] = {}
         self._cuts: tuple[Cut, ...] = ()
         self.noise_rise_db: list[float] = [0.0] * self._count
@@ -160,6 +168,19 @@ class Field:
             return 0.0
         return math.hypot(here[0] - there[0], here[1] - there[1])
 
+    def is_sensed_by_all(self, sender: int) -> bool:
+        """Whether every present robot senses what `sender` emits."""
+        if self._stale:
+            self._place_robots()
+        sensed = self._sensed_by_all.get(sender)
+        if sensed is None:
+            sensed = False
+            if sender in self._place:
+                row, least = self.row(sender), self.budget.carrier_sense_db
+                sensed = all(row[i] >= least for i in self._place)
+            self._sensed_by_all[sender] = sensed
+        return sensed
+
     def farthest(self, sender: int) -> float:
         """Distance from `sender` to the farthest robot that hears it [m]."""
         row = self.row(sender)
@@ -169,6 +190,7 @@ class Field:
     def _place_robots(self) -> None:
         self._stale = False
         self._rows = {}
+        self._sensed_by_all = {}
         self._cells = {}
         self._place = {}
         reach = self.budget.reach

@@ -23,12 +23,13 @@ from onehop.contracts.messages import (
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import RadioBriefing, RadioSection
 from radio_proxy.core.airtime import dsss
-from radio_proxy.core.dcf import EVERYONE, Dcf, Frame
+from radio_proxy.core.contention import EVERYONE, Frame
+from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.error_rates import bit_error_rate
 from radio_proxy.core.medium import Emission, Medium
 from radio_proxy.core.message import Data, Message
-from radio_proxy.core.propagation import Field, link_budget
+from radio_proxy.core.propagation import OWN_DB, Field, link_budget
 from radio_proxy.core.routing.direct import DirectRouter
 from radio_proxy.core.routing.interface import Router
 from radio_proxy.core.routing.mrdv import MrdvRouter
@@ -195,21 +196,26 @@ class Radio:
         return True
 
     def deliver(self, data: Data, now: int) -> None:
-        """A message reached its destination."""
+        """A message reached its destination; a second copy of it is dropped."""
         message = data.message
-        message.copies -= 1
-        if message.settled:
-            return
-        message.settled = True
-        self._settle(data, message.destination, Fate.DELIVERED, now)
+        if not message.settled:
+            message.settled = True
+            self._settle(data, message.destination, Fate.DELIVERED, now)
+        self._release(message)
 
     def drop(self, data: Data, fate: Fate) -> None:
-        """One copy of a message is gone; when it was the last one, the message is lost."""
-        message = data.message
+        """One copy of a message is given up."""
+        data.message.loss = (data, fate)
+        self._release(data.message)
+
+    def _release(self, message: Message) -> None:
+        """A robot holds a message no more; when it was the last one, the message is lost."""
         message.copies -= 1
         if message.settled or message.copies > 0:
             return
         message.settled = True
+        assert message.loss is not None
+        data, fate = message.loss
         if message.destination == BROADCAST:
             for robot in sorted(self._cards):
                 if robot != message.source:
@@ -267,12 +273,22 @@ class Radio:
             packet.message.copies += 1
             self._note_link(packet, frame)
             packet = packet.moved(holder, frame.attempts)
+        else:
+            self._overhear(packet, sender, holder)
         self._cards[holder].router.on_packet(packet, self._robots[sender], now)
+
+    def _overhear(self, packet: object, sender: int, holder: int) -> None:
+        """Control packets are heard by everyone whose mean SNR allows it."""
+        row = self._field.row(sender)
+        threshold_db = self._field.budget.receive_threshold_db
+        for robot in sorted(self._cards):
+            if robot != holder and threshold_db <= row[self._index[robot]] < OWN_DB:
+                self._cards[robot].router.on_overheard(packet)
 
     def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:
         robot = self._robots[sender]
         if isinstance(frame.packet, Data):
-            frame.packet.message.copies -= 1
+            self._release(frame.packet.message)
         self._cards[robot].router.on_acknowledged(frame.packet, self._robots[frame.receiver], now)
 
     def on_undeliverable(self, sender: int, frame: Frame, now: int) -> None:

@@ -7,7 +7,8 @@ from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Presence
 from onehop.contracts.randomness import generator
 from radio_proxy.core.airtime import Timing
-from radio_proxy.core.dcf import Dcf, Frame
+from radio_proxy.core.contention import Frame
+from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.medium import Emission, Medium
 from radio_proxy.core.propagation import Field, LinkBudget

@@ -107,7 +107,7 @@ def test_raw_mode_reads_occupancy_of_a_hundred_and_more_is_unknown() -> None:
     [
         b"P2\n3 2\n255\n254 0 205\n254 254 254\n",
         b"P2 # one\n# two\n3 # three\n2 255\n254 0 205 # four\n254 254 254",
-        b"P5 3 2 65535\n" + b"".join(struct.pack(">H", grey * 257) for grey in GREYS),
+        b"P5 3 2 60000\n" + b"".join(struct.pack(">H", grey * 60000 // 255) for grey in GREYS),
         png([[(254,), (0,), (205,)], [(254,)] * 3], 0),
         png([[(254,) * 3, (0,) * 3, (205,) * 3], [(254,) * 3] * 3], 2),
     ],

@@ -60,6 +60,14 @@ def test_a_given_radius_is_kept() -> None:
     assert 4.0 < np.hypot(poses[:, 0] - 10.0, poses[:, 1] - 10.0).max() <= 8.0
 
 
+def test_places_are_spread_evenly_over_the_disc() -> None:
+    """The mean distance of points in a disc of radius r from its centre is 2 r / 3."""
+    field = load_map(MapSection(width=60.0, height=60.0), {})
+    wide = replace(PLAN, start=StartSection(30.0, 30.0, radius=25.0))
+    poses = np.concatenate([start_poses(replace(wide, seed=seed), field) for seed in range(100)])
+    assert np.hypot(poses[:, 0] - 30.0, poses[:, 1] - 30.0).mean() == pytest.approx(50.0 / 3.0, abs=0.8)
+
+
 def test_given_poses_are_in_degrees_and_in_order_of_id() -> None:
     start = StartSection(poses=((3.0, 4.0, 90.0), (5.0, 6.0, -180.0), (7.0, 8.0, 370.0)))
     poses = start_poses(replace(PLAN, start=start, team=TeamSection(size=3)), WALLS)

@@ -86,6 +86,8 @@ def test_the_goal_is_reached_by_its_leader_only() -> None:
 def test_a_team_that_stopped_elsewhere_has_failed_for_the_reason_it_gives() -> None:
     referee = Referee(PLAN)
     referee.on_notes(2, (Note("replanned", {}), Note("no_way_to_the_goal", {})))
+    referee.on_notes(2, (Note("mode", {"to": "stopped"}),))
+    referee.on_notes(3, (Note("set_up", {}),))
     far = {robot: (10.0 + robot, 10.0) for robot in TEAM}
     outcome = judge(referee, *(scene(tick, far, all_stopped()) for tick in range(41)))
     assert outcome is not None
@@ -141,6 +143,27 @@ def test_a_robot_that_was_taken_back_is_not_lost() -> None:
     outcome = judge(referee, scene(3, AT_GOAL, all_stopped(epoch=3)))
     assert outcome is not None
     assert outcome.lost == ()
+
+
+def test_a_robot_that_was_taken_back_and_then_fell_behind_was_not_dropped() -> None:
+    referee = Referee(PLAN)
+    places = AT_GOAL | {1: (20.0, 20.0)}
+    for tick, members in enumerate([TEAM, (2, 3), TEAM]):
+        words = {robot: status(members=members, epoch=tick + 1) for robot in TEAM}
+        referee.judge(scene(tick, places, words, 1.0), False)
+    outcome = judge(referee, scene(3, places, all_stopped(epoch=3)))
+    assert outcome is not None
+    assert outcome.lost == (Lost(1, 0.15, "did not arrive"),)
+
+
+def test_who_follows_without_being_on_the_roster_has_not_arrived() -> None:
+    referee = Referee(PLAN)
+    referee.judge(scene(0, AT_GOAL, all_stopped(), 1.0), False)
+    words = all_stopped() | {2: status(members=(2, 3), epoch=2)}
+    outcome = judge(referee, scene(4, AT_GOAL, words))
+    assert outcome is not None
+    assert outcome.arrived == (2, 3)
+    assert outcome.lost == (Lost(1, 0.2, "dropped from the roster of robot 2"),)
 
 
 def test_a_straggler_of_the_roster_did_not_arrive() -> None:

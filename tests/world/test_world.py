@@ -180,6 +180,16 @@ def test_an_admitted_robot_wakes_up_in_its_body_as_a_new_incarnation() -> None:
     assert ground.truth().present[1].twist == Twist(1.0, 0.0)
 
 
+def test_what_a_robot_offered_before_it_was_restarted_is_lost() -> None:
+    ground = world()
+    ground.advance({1: action(1.0), 2: action(1.0)})
+    ground.fence(2, "died")
+    ground.admit(2)
+    truth = ground.truth()
+    assert [offer.robot for offer in truth.offers] == [1]
+    assert (truth.present[1].robot, truth.present[1].twist) == (2, Twist(0.0, 0.0))
+
+
 def test_a_scripted_kill_shows_in_the_first_tick_at_or_after_its_time() -> None:
     ground = world(FaultSection("kill", at_s=0.12, robots=(3, 1)))
     for tick in range(3):

@@ -24,7 +24,7 @@ _SLACK = 1e-4
 """What `_direction` may be wrong by, and an interval is widened by at each end [rad]."""
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _direction(x: float, y: float) -> float:
     """atan2(y, x) within _SLACK: cheap, since it only selects the beams that are tested exactly.
 
@@ -44,18 +44,18 @@ def _direction(x: float, y: float) -> float:
     return -angle if y < 0.0 else angle
 
 
-@numba.njit(cache=True)
-def _wall_beams(
+@numba.njit(cache=True, error_model="numpy")
+def _edge_beams(
     ax: float, ay: float, bx: float, by: float, first: int, last: int,
     fan: FloatArray, ranges: FloatArray,
 ) -> None:  # fmt: skip
-    """Shorten beams first..last to where they hit the segment a-b, given in the robot's frame.
+    """Shorten those of the beams first..last that hit the segment a-b, given in the robot's frame.
 
     With d the beam's direction, the ends' sides are a x d, b x d; the range is a x b / (a x d - b x d).
     """
     area = ax * by - ay * bx
     for beam in range(max(0, first), min(len(ranges) - 1, last) + 1):
-        dx, dy = fan[beam, 0], fan[beam, 1]
+        dx, dy = fan[0, beam], fan[1, beam]
         side_a, side_b = ax * dy - ay * dx, bx * dy - by * dx
         if (side_a > 0.0 and side_b > 0.0) or (side_a < 0.0 and side_b < 0.0):
             continue
@@ -65,7 +65,23 @@ def _wall_beams(
             ranges[beam] = reach
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
+def _inner_beams(
+    ax: float, ay: float, bx: float, by: float, first: int, last: int,
+    fan: FloatArray, ranges: FloatArray,
+) -> None:  # fmt: skip
+    """Shorten the beams first..last, all known to hit the segment: without a branch, hence fast."""
+    first, stop = max(0, first), min(len(ranges), last + 1)
+    if stop <= first:
+        return
+    area, ex, ey = ax * by - ay * bx, ax - bx, ay - by
+    dx, dy, inner = fan[0, first:stop], fan[1, first:stop], ranges[first:stop]
+    for beam in range(len(inner)):
+        reach = area / (ex * dy[beam] - ey * dx[beam])
+        inner[beam] = reach if reach < inner[beam] else inner[beam]
+
+
+@numba.njit(cache=True, error_model="numpy")
 def _look_at_wall(
     ax: float, ay: float, bx: float, by: float, limit: float, half: float, per_radian: float,
     fan: FloatArray, ranges: FloatArray,
@@ -81,23 +97,34 @@ def _look_at_wall(
         return
     from_a, from_b = _direction(ax, ay), _direction(bx, by)
     low, high = min(from_a, from_b), max(from_a, from_b)
-    if high - low <= math.pi + 2.0 * _SLACK:
-        right = math.ceil((low - _SLACK + half) * per_radian)
-        left = math.floor((high + _SLACK + half) * per_radian)
-        _wall_beams(ax, ay, bx, by, right, left, fan, ranges)
-    if high - low >= math.pi - 2.0 * _SLACK:
-        right = math.ceil((high - _SLACK + half) * per_radian)
-        left = math.floor((low + _SLACK + half) * per_radian)
-        _wall_beams(ax, ay, bx, by, right, len(ranges) - 1, fan, ranges)
-        _wall_beams(ax, ay, bx, by, 0, left, fan, ranges)
+    if high - low < math.pi - 2.0 * _SLACK:
+        outer = math.ceil((low - _SLACK + half) * per_radian)
+        first = max(outer, math.floor((low + _SLACK + half) * per_radian) + 1)
+        last = math.ceil((high - _SLACK + half) * per_radian) - 1
+        if last < first:
+            last = first - 1
+        _edge_beams(ax, ay, bx, by, outer, first - 1, fan, ranges)
+        _inner_beams(ax, ay, bx, by, first, last, fan, ranges)
+        outer = math.floor((high + _SLACK + half) * per_radian)
+        _edge_beams(ax, ay, bx, by, last + 1, outer, fan, ranges)
+    elif high - low <= math.pi + 2.0 * _SLACK:
+        _edge_beams(ax, ay, bx, by, 0, len(ranges) - 1, fan, ranges)
+    else:
+        left = math.ceil((high - _SLACK + half) * per_radian)
+        _edge_beams(ax, ay, bx, by, left, len(ranges) - 1, fan, ranges)
+        right = math.floor((low + _SLACK + half) * per_radian)
+        _edge_beams(ax, ay, bx, by, 0, right, fan, ranges)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _look_at_disc(
     cx: float, cy: float, radius: float, limit: float, half: float, per_radian: float,
     fan: FloatArray, ranges: FloatArray,
 ) -> None:  # fmt: skip
-    """Shorten the beams that hit a disc, centre in the robot's frame [m]."""
+    """Shorten the beams that hit a disc, centre in the robot's frame [m].
+
+    A robot does not see the disc in which it is, and that is its own.
+    """
     squared = cx * cx + cy * cy
     if squared > (limit + radius) * (limit + radius) or squared <= radius * radius:
         return
@@ -106,7 +133,7 @@ def _look_at_disc(
         right = max(0, math.ceil((middle + lap - width + half) * per_radian))
         left = min(len(ranges) - 1, math.floor((middle + lap + width + half) * per_radian))
         for beam in range(right, left + 1):
-            dx, dy = fan[beam, 0], fan[beam, 1]
+            dx, dy = fan[0, beam], fan[1, beam]
             off = cx * dy - cy * dx
             if abs(off) > radius:
                 continue
@@ -115,13 +142,13 @@ def _look_at_disc(
                 ranges[beam] = reach
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, error_model="numpy")
 def _scan_all(
     poses: FloatArray, looking: IntArray, radius: float, limit: float, half: float, fan: FloatArray,
     frame: FloatArray, columns: int, rows: int, first: IntArray, segments: FloatArray, scans: Scans,
 ) -> None:  # fmt: skip
     """Scan from the poses, (n, 3), numbered in `looking` into rows of scans; the others are seen."""
-    beams = len(fan)
+    beams = fan.shape[1]
     per_radian = (beams - 1) / (2.0 * half)
     ranges = np.empty(beams)
     for row in range(len(looking)):
@@ -138,31 +165,29 @@ def _scan_all(
                 limit, half, per_radian, fan, ranges,
             )  # fmt: skip
         for other in range(len(poses)):
-            if other != own:
-                ax, ay = poses[other, 0] - x, poses[other, 1] - y
-                _look_at_disc(
-                    c * ax + s * ay, c * ay - s * ax, radius, limit, half, per_radian, fan, ranges
-                )
+            ax, ay = poses[other, 0] - x, poses[other, 1] - y
+            _look_at_disc(c * ax + s * ay, c * ay - s * ax, radius, limit, half, per_radian, fan, ranges)
         for beam in range(beams):
             scans[row, beam] = ranges[beam] if ranges[beam] <= limit else math.inf
 
 
 class Laser:
-    """The lasers of a team on one map."""
+    """The lasers of a team on one map. Making it loads the compiled kernel: no tick waits for that."""
 
     def __init__(self, walls: WallMap, body: RobotSection) -> None:
         self._half = math.radians(body.laser_fov_deg) / 2.0
         angles = np.linspace(-self._half, self._half, body.laser_beams)
-        self._fan = np.column_stack((np.cos(angles), np.sin(angles)))
+        self._fan = np.vstack((np.cos(angles), np.sin(angles)))
         self._range = body.laser_range
         self._radius = body.radius
         self._cells: CellList = cell_list(walls.segments, walls.bounds, body.laser_range)
+        self.scans(np.empty((0, 3)), np.empty(0, dtype=np.int32))
 
     def scans(self, poses: FloatArray, looking: IntArray) -> Scans:
         """One scan for each robot in `looking`, (k,) int32, rows of poses (n, 3) [m, m, rad].
 
         (k, n_beams) float32 [m], right to left; +inf where neither a wall nor a robot is in range.
         """
-        scans = np.empty((len(looking), len(self._fan)), dtype=np.float32)
+        scans = np.empty((len(looking), self._fan.shape[1]), dtype=np.float32)
         _scan_all(poses, looking, self._radius, self._range, self._half, self._fan, *self._cells, scans)
         return scans

@@ -230,13 +230,15 @@ def _drive(period: float, poses: FloatArray, twists: FloatArray, radius: float, 
 
 
 class Motion:
-    """Moves the robots of a team on one map, period by period."""
+    """Moves the robots of a team on one map, period by period. Making one loads the compiled kernels."""
 
     def __init__(self, walls: WallMap, body: RobotSection, period_ns: int) -> None:
         self._period = period_ns / 1e9
         self._radius = body.radius
         reach = body.radius + body.max_speed * self._period + _MARGIN
         self._cells = cell_list(walls.segments, walls.bounds, reach)
+        self.advance(np.empty((0, 3)), np.empty((0, 2)))
+        self.wall_gap(0.0, 0.0)
 
     def advance(self, poses: FloatArray, twists: FloatArray) -> Rows:
         """Move robots by their twists, (n, 2) [m/s, rad/s], at poses, (n, 3) [m, m, rad], in place.

@@ -18,8 +18,8 @@ _GAP = 0.2
 _FILLING = 0.2
 """Part of the start disc that the robots' zones may cover: random placing ends quickly below 0.5."""
 
-_TRIES = 400
-"""Random places tried for one robot before the disc is given up as too full."""
+_DRAWS, _BATCH = 20, 20
+"""Random places tried for one robot before the disc is given up as too full: so many times so many."""
 
 _GROWTH, _GROWN = 1.15, 8
 """An automatic disc that is too full grows by this factor, at most so often (3 times the radius)."""
@@ -48,7 +48,8 @@ def start_poses(scenario: Scenario, walls: WallMap) -> FloatArray:
     raise ScenarioError(
         "start.x, start.y" if not start.radius else "start.radius",
         f"no room for {count} robots around ({start.x}, {start.y})",
-        f"a place with {apart:.1f} m from robot to robot and {inflation} m to walls, or fewer robots",
+        f"a place with {apart:.1f} m from robot to robot and {inflation} m to walls, "
+        "fewer robots, or a smaller planner.inflation",
     )
 
 
@@ -62,14 +63,22 @@ def _scatter(
     start, inflation = scenario.start, scenario.planner.inflation
     poses: list[tuple[float, float, float]] = []
     for _ in scenario.team.robots:
-        for _ in range(_TRIES):
-            share, direction, turn = random.random(3)
-            distance = radius * math.sqrt(share)
-            x = start.x + distance * math.cos(math.tau * direction)
-            y = start.y + distance * math.sin(math.tau * direction)
-            clear = all(math.hypot(x - other[0], y - other[1]) >= apart for other in poses)
-            if clear and walls.sees(start.x, start.y, x, y, inflation):
-                poses.append((x, y, math.pi - math.tau * turn))
+        for _ in range(_DRAWS):
+            share, direction, turn = random.random((3, _BATCH))
+            distance, angle = radius * np.sqrt(share), math.tau * direction
+            x, y = start.x + distance * np.cos(angle), start.y + distance * np.sin(angle)
+            fits = walls.free(np.column_stack((x, y)), inflation)
+            for other in poses:
+                fits &= np.hypot(x - other[0], y - other[1]) >= apart
+            seen = (
+                k
+                for k in np.flatnonzero(fits).tolist()
+                if walls.sees(start.x, start.y, x[k], y[k], inflation)
+            )
+            chosen = next(seen, None)
+            if chosen is not None:
+                heading = math.pi - math.tau * turn[chosen]
+                poses.append((float(x[chosen]), float(y[chosen]), heading))
                 break
         else:
             return None

@@ -68,8 +68,10 @@ class Referee:
         self._departed.pop(robot, None)
 
     def on_notes(self, robot: int, notes: tuple[Note, ...]) -> None:
-        """Remember the last of a robot's notes: the reason it gives should it stop."""
-        self._last_words[robot] = notes[-1].kind.replace("_", " ")
+        """Remember the last thing a robot had to say, other than in which mode it is."""
+        for note in notes:
+            if note.kind != "mode":
+                self._last_words[robot] = note.kind.replace("_", " ")
 
     def judge(self, scene: Scene, hope: bool) -> Outcome | None:
         """The outcome, if the mission has one by now. hope: somebody will yet be restarted."""
@@ -136,10 +138,11 @@ class Referee:
         return f"robot {leaders} at the goal with {len(self._arrived(scene))} of {len(self._robots)}"
 
     def _stop_reason(self, scene: Scene) -> str:
+        """Why nobody drives any more, in the words of those who lead."""
         words = [
             f"robot {one.robot}: {self._last_words[one.robot]}"
             for one in scene.present
-            if one.robot in self._last_words
+            if one.robot in self._last_words and one.robot in self._crowned
         ]
         return "everyone stopped before the goal" + (f" ({'; '.join(words)})" if words else "")
 

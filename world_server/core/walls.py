@@ -46,14 +46,14 @@ class WallMap:
 
     def clearance(self, points: FloatArray) -> FloatArray:
         """Distance from each point, (n, 2), to the nearest wall, (n,) [m]; 0 in something filled."""
-        distance = np.empty(len(points))
+        distance = np.zeros(len(points))
+        outside = np.flatnonzero(~self.ground.solid(points))
         rows = max(1, _CHUNK // max(1, len(self.segments)))
-        for first in range(0, len(points), rows):
-            chunk = points[first : first + rows]
-            distance[first : first + rows] = segment_distances(chunk, self.segments).min(
+        for first in range(0, len(outside), rows):
+            chunk = outside[first : first + rows]
+            distance[chunk] = segment_distances(points[chunk], self.segments).min(
                 axis=1, initial=math.inf
             )
-        distance[self.ground.solid(points)] = 0.0
         return distance
 
     def free(self, points: FloatArray, radius: float = 0.0) -> BoolArray:

@@ -23,6 +23,9 @@ class DirectRouter:
         assert isinstance(packet, Data)
         self._host.deliver(packet, now)
 
+    def on_overheard(self, packet: object) -> None:
+        """Others' control packets say nothing that this protocol uses."""
+
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
         """Nothing is kept that could be refreshed."""
 

@@ -60,6 +60,10 @@ class Router(Protocol):
         """A packet arrived from a neighbour; a Data already lists this robot in its path."""
         ...
 
+    def on_overheard(self, packet: object) -> None:
+        """A control packet for another robot was heard."""
+        ...
+
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
         """The link layer's acknowledgement of a unicast packet came."""
         ...

@@ -59,7 +59,7 @@ class MrdvRouter:
         self._number = host.incarnation << 16
         self._cautious_until = now + DELETE_PERIOD_NS if host.incarnation else now
         self._searches: dict[int, Search] = {}
-        self._buffered = 0
+        self.buffered = 0
         self._seen: dict[tuple[int, int], int] = {}
         self._requests: deque[int] = deque()
         self._errors: deque[int] = deque()
@@ -84,6 +84,9 @@ class MrdvRouter:
         elif isinstance(packet, Rerr):
             self._report(self.table.heed_error(sender, packet.lost, now), now)
         self._flush(sender, now)
+
+    def on_overheard(self, packet: object) -> None:
+        """Others' control packets say nothing that this protocol uses."""
 
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:  # noqa: ARG002
         self.table.refresh(next_hop, now)
@@ -128,10 +131,10 @@ class MrdvRouter:
     # Discovery by the origin.
 
     def _wait(self, data: Data, now: int) -> None:
-        if self._buffered >= BUFFER_MESSAGES:
+        if self.buffered >= BUFFER_MESSAGES:
             self._host.drop(data, Fate.QUEUE_FULL)
             return
-        self._buffered += 1
+        self.buffered += 1
         destination = data.message.destination
         data.message.begin_search(now)
         search = self._searches.get(destination)
@@ -190,7 +193,7 @@ class MrdvRouter:
 
     def _end_search(self, search: Search, now: int) -> list[Data]:
         del self._searches[search.destination]
-        self._buffered -= len(search.waiting)
+        self.buffered -= len(search.waiting)
         for data in search.waiting:
             data.message.end_search(now)
         return search.waiting

@@ -1,14 +1,15 @@
 """MRSR: DSR (RFC 4728) whose ROUTE REQUESTs are passed on with a probability (thesis 3.7.2).
 
-Left out, as the RFC allows: flow state, promiscuous listening and what builds on it (route shortening,
-gratuitous replies, giving up a reply that another robot has made needless), piggybacking. Route
-maintenance is the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
+Left out, as the RFC allows: flow state, automatic route shortening, piggybacking. Route maintenance is
+the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
 
 Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
-flag for normal forwarding. At the origin itself a message is searched for twice at most.
+flag for normal forwarding. At the origin itself a message is searched for twice at most. A robot that
+waits to reply out of its cache listens for others' replies, not for the origin's first data (8.2.5),
+because replies are the only frames of others that a card hands up here. A target answers the copies of a
+request that came no farther than the first one, because in one cell every neighbour passes one on.
 """
 
-from collections import deque
 from dataclasses import dataclass, field, replace
 
 from onehop.contracts.messages import BROADCAST, Fate
@@ -58,9 +59,10 @@ class MrsrRouter:
         self._gamma_distance = gamma_distance
         self._number = host.incarnation << 16
         self._searches: dict[int, Search] = {}
-        self._buffered = 0
-        self._seen: dict[int, deque[tuple[int, int]]] = {}
+        self.buffered = 0
+        self._seen: dict[int, dict[int, int]] = {}
         self._blacklist: dict[int, int] = {}
+        self._pending: dict[tuple[int, int], int] = {}
 
     def submit(self, data: Data, now: int) -> None:
         if data.message.destination in self._searches or not self._send_along_cache(data, now):
@@ -70,6 +72,10 @@ class MrsrRouter:
         waiting = [data for target in sorted(self._searches) for data in self._searches[target].waiting]
         self._searches.clear()
         return waiting
+
+    def remembered_requests(self) -> int:
+        """How many requests of others are remembered (at most 16 a robot, RFC 4728, 4.3)."""
+        return sum(len(seen) for seen in self._seen.values())
 
     def on_packet(self, packet: object, sender: int, now: int) -> None:
         if isinstance(packet, Data):
@@ -82,6 +88,13 @@ class MrsrRouter:
             self.cache.forget_link(packet.a, packet.b)
             if packet.back[-1] != self._me:
                 self._host.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
+
+    def on_overheard(self, packet: object) -> None:
+        """Another robot's reply that is as short makes one's own needless (RFC 4728, 8.2.5)."""
+        if isinstance(packet, Rrep):
+            mine = self._pending.get((packet.found[0], packet.number))
+            if mine is not None and len(packet.found) <= mine:
+                del self._pending[packet.found[0], packet.number]
 
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
         """A confirmed link needs no mark: a path holds until it fails or is too old."""
@@ -140,10 +153,10 @@ class MrsrRouter:
     # Discovery by the origin.
 
     def _wait(self, data: Data, now: int) -> None:
-        if self._buffered >= SEND_BUFFER:
+        if self.buffered >= SEND_BUFFER:
             self._host.drop(data, Fate.QUEUE_FULL)
             return
-        self._buffered += 1
+        self.buffered += 1
         data.message.begin_search(now)
         self._host.at(now + SEND_BUFFER_TIMEOUT_NS, self._on_waited_too_long, data)
         target = data.message.destination
@@ -192,7 +205,7 @@ class MrsrRouter:
         search.waiting.remove(data)
         if not search.waiting:
             del self._searches[search.target]
-        self._buffered -= 1
+        self.buffered -= 1
         data.message.end_search(now)
 
     def _flush(self, now: int) -> None:
@@ -210,22 +223,32 @@ class MrsrRouter:
             return
         route = (*request.route, self._me)
         self._learn(route, now)
+        first_length = self._first_length(request, len(route))
         if request.target == self._me:
-            self._reply_after(
-                round(self._host.uniform() * BROADCAST_JITTER_NS), Rrep(route, route[::-1]), now
-            )
+            if not first_length or len(route) <= first_length:
+                delay = round(self._host.uniform() * BROADCAST_JITTER_NS)
+                self._host.at(now + delay, self._send_rrep, Rrep(request.number, route, route[::-1]))
             return
-        seen = self._seen.setdefault(request.origin, deque(maxlen=REQUEST_IDS))
-        if (request.number, request.target) in seen:
+        if first_length:
             return
-        seen.append((request.number, request.target))
         cached = self.cache.find(request.target, now)
         if cached is not None and not set(request.route) & set(cached):
-            found = (*request.route, *cached)
-            delay = BROADCAST_JITTER_NS * (len(found) - 2 + self._host.uniform())
-            self._reply_after(round(delay), Rrep(found, route[::-1]), now)
+            reply = Rrep(request.number, (*request.route, *cached), route[::-1])
+            self._pending[request.origin, request.number] = len(reply.found)
+            wait = BROADCAST_JITTER_NS * (len(reply.found) - 2 + self._host.uniform())
+            self._host.at(now + round(wait), self._send_unless_needless, reply)
         elif request.ttl > 1:
             self._pass_on(replace(request, route=route, ttl=request.ttl - 1), now)
+
+    def _first_length(self, request: Rreq, length: int) -> int:
+        """Length of the route by which this request came first; 0 when it has not come before."""
+        seen = self._seen.setdefault(request.origin, {})
+        first = seen.setdefault(request.number, 0)
+        if not first:
+            seen[request.number] = length
+        if len(seen) > REQUEST_IDS:
+            del seen[next(iter(seen))]
+        return first
 
     def _pass_on(self, request: Rreq, now: int) -> None:
         if not request.normal:
@@ -237,9 +260,9 @@ class MrsrRouter:
     def _send_rreq(self, request: Rreq, now: int) -> None:
         self._host.send(request, BROADCAST, request.size_bytes, "rreq", now)
 
-    def _reply_after(self, delay: int, reply: Rrep, now: int) -> None:
-        """Every replier waits a little, longer routes longer (RFC 4728, 8.2.4 and 8.2.5)."""
-        self._host.at(now + delay, self._send_rrep, reply)
+    def _send_unless_needless(self, reply: Rrep, now: int) -> None:
+        if self._pending.pop((reply.found[0], reply.number), None) is not None:
+            self._send_rrep(reply, now)
 
     def _send_rrep(self, reply: Rrep, now: int) -> None:
         self._host.send(reply, after(reply.back, self._me), reply.size_bytes, "rrep", now)

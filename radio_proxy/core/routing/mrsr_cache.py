@@ -3,50 +3,54 @@
 CACHE_TIMEOUT_NS = 300 * 1_000_000_000
 """RouteCacheTimeout (RFC 4728, section 9)."""
 
-CACHE_PATHS = 64
-"""Bound of the cache; the path that was added first makes room."""
+PATHS_PER_DESTINATION = 4
+"""Bound of the cache; longer and older paths make room."""
+
+Path = tuple[int, ...]
 
 
 class RouteCache:
-    """Paths that begin at one robot; every beginning of a path is a route as well."""
+    """Paths that begin at one robot, the shortest first, the newest first among equals."""
 
     def __init__(self, robot: int) -> None:
         self._robot = robot
-        self._paths: dict[tuple[int, ...], int] = {}
+        self._paths: dict[int, list[tuple[Path, int]]] = {}
 
-    def add(self, path: tuple[int, ...], now: int) -> None:
-        """Learn a path; one that visits a robot twice or does not begin here is refused."""
-        if len(path) < 2 or path[0] != self._robot or len(set(path)) != len(path):
+    def add(self, path: Path, now: int) -> None:
+        """Learn a path to everyone on it; one with a loop or from elsewhere is refused."""
+        if path[0] != self._robot or len(set(path)) != len(path):
             return
-        self._paths.pop(path, None)
-        self._paths[path] = now + CACHE_TIMEOUT_NS
-        if len(self._paths) > CACHE_PATHS:
-            del self._paths[next(iter(self._paths))]
+        for length in range(2, len(path) + 1):
+            self._add_one(path[:length], now + CACHE_TIMEOUT_NS)
 
-    def find(self, destination: int, now: int) -> tuple[int, ...] | None:
-        """The shortest path to a destination, the newest of equally short ones."""
-        best: tuple[int, ...] | None = None
-        for path, expires in list(self._paths.items()):
-            if expires <= now:
-                del self._paths[path]
-            elif destination in path[1:]:
-                length = path.index(destination) + 1
-                if best is None or length <= len(best):
-                    best = path[:length]
-        return best
+    def find(self, destination: int, now: int) -> Path | None:
+        """The best path to a destination."""
+        for path, expires in self._paths.get(destination, ()):
+            if expires > now:
+                return path
+        return None
 
     def forget_link(self, a: int, b: int) -> None:
-        """Cut every path before the broken link, in whichever direction it uses it (RFC 4728, 8.3.5)."""
-        paths, self._paths = self._paths, {}
-        for path, expires in paths.items():
-            keep = len(path)
-            for i in range(len(path) - 1):
-                if path[i : i + 2] in ((a, b), (b, a)):
-                    keep = i + 1
-                    break
-            if keep > 1:
-                self._paths.setdefault(path[:keep], expires)
+        """Drop every path that uses the broken link in either direction (RFC 4728, 8.3.5).
 
-    def paths(self) -> tuple[tuple[int, ...], ...]:
-        """Everything that is cached, oldest first."""
-        return tuple(self._paths)
+        The part of a path before the break stands under its own destination.
+        """
+        for destination in sorted(self._paths):
+            kept = [entry for entry in self._paths[destination] if not _uses(entry[0], a, b)]
+            if kept:
+                self._paths[destination] = kept
+            else:
+                del self._paths[destination]
+
+    def paths(self) -> tuple[Path, ...]:
+        """Everything that is cached, by destination."""
+        return tuple(path for to in sorted(self._paths) for path, _ in self._paths[to])
+
+    def _add_one(self, path: Path, expires: int) -> None:
+        others = [entry for entry in self._paths.get(path[-1], ()) if entry[0] != path]
+        ranked = sorted([(path, expires), *others], key=lambda entry: len(entry[0]))
+        self._paths[path[-1]] = ranked[:PATHS_PER_DESTINATION]
+
+
+def _uses(path: Path, a: int, b: int) -> bool:
+    return any(path[i : i + 2] in ((a, b), (b, a)) for i in range(len(path) - 1))

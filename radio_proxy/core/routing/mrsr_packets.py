@@ -37,8 +37,12 @@ class Rreq:
 
 @dataclass(frozen=True, slots=True)
 class Rrep:
-    """ROUTE REPLY: `found` leads from origin to target, `back` from the replier to the origin."""
+    """ROUTE REPLY: `found` leads from origin to target, `back` from the replier to the origin.
 
+    number: of the request that it answers.
+    """
+
+    number: int
     found: tuple[int, ...]
     back: tuple[int, ...]
 

@@ -21,6 +21,10 @@ TURN_IN_PLACE_ABOVE = 1.3
 """Bearing of the aim from which it only turns [rad]."""
 
 
+SLIDE = math.pi / 2 + 0.12
+"""Bearing that a too near obstacle gets while the robot slides past it [rad]."""
+
+
 class Driver:
     """Follows one way after the other. period: of a tick [s]. clearance: to keep from obstacles [m]."""
 
@@ -56,7 +60,7 @@ class Driver:
         if len(self.way) < 2:
             return Twist(0.0, 0.0)
         x, y = self._aim(pose)
-        return self.shield(pose, scan, self.towards(pose, x, y))
+        return self.shield(scan, self.towards(pose, x, y))
 
     def towards(self, pose: Pose, x: float, y: float) -> Twist:
         """Twist that leads to a point nearby, by pure pursuit."""
@@ -79,9 +83,9 @@ class Driver:
             w = math.copysign(limit, w)
         return Twist(speed, w)
 
-    def turn_to(self, pose: Pose, x: float, y: float) -> Twist:
-        """Turn in place towards a point."""
-        return self._turn(wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.heading))
+    def turn_to(self, pose: Pose, heading: float) -> Twist:
+        """Turn in place to a heading."""
+        return self._turn(wrap_angle(heading - pose.heading))
 
     def _turn(self, bearing: float) -> Twist:
         """Turn in place; the side is kept until the turn is done, or two sides could take turns forever."""
@@ -92,26 +96,33 @@ class Driver:
         rate = min(self.body.max_turn_rate, abs(bearing) / self.period)
         return Twist(0.0, rate * self.turning)
 
-    def shield(self, pose: Pose, scan: Ranges, twist: Twist) -> Twist:
-        """The same twist, without its speed if it would hit something or enter an inflated obstacle."""
-        self.shielded += 1
+    def shield(self, scan: Ranges, twist: Twist) -> Twist:
+        """The same twist, unless it would hit something or enter an inflated obstacle."""
         nearest = float(scan.min())
-        if twist.v <= 0.0 or nearest > self._caution:
+        if twist.v <= 0.0:
+            return twist
+        if nearest > self._caution:
             self.shielded = 0
             return twist
-        if bool((scan < self._stop_ranges).any()):
-            return Twist(0.0, twist.w)
-        step = twist.v * self.period
-        turn = 0.5 * twist.w * self.period
-        seen = np.flatnonzero(scan < self._caution + step)
+        seen = np.flatnonzero(scan < self._caution)
         points = self.fan.directions[seen] * scan[seen, None]
-        next_room = np.hypot(
-            points[:, 0] - step * math.cos(turn), points[:, 1] - step * math.sin(turn)
-        ).min()
-        if next_room < min(self.clearance, nearest):
-            return Twist(0.0, twist.w)
-        self.shielded = 0
-        return twist
+        step, turn = twist.v * self.period, 0.5 * twist.w * self.period
+        next_room = np.hypot(points[:, 0] - step * math.cos(turn), points[:, 1] - step * math.sin(turn))
+        ahead = bool((scan < self._stop_ranges).any())
+        if not ahead and next_room.min() >= min(self.clearance, nearest):
+            self.shielded = 0
+            return twist
+        self.shielded += 1
+        return self._slide(float(self.fan.angles[int(np.argmin(scan))]), twist, ahead)
+
+    def _slide(self, obstacle: float, twist: Twist, ahead: bool) -> Twist:
+        """Drive along what is too near, a little away from it: its bearing and a right angle more."""
+        side = math.copysign(1.0, twist.w - math.copysign(1e-9, obstacle))
+        bearing = min((obstacle + SLIDE, obstacle - SLIDE), key=lambda b: (abs(b - 0.2 * side), b))
+        if abs(bearing) > 0.1 or ahead:
+            rate = min(self.body.max_turn_rate, abs(bearing) / self.period)
+            return Twist(0.0, math.copysign(rate, bearing))
+        return Twist(0.5 * twist.v, bearing / self.period)
 
     def _aim(self, pose: Pose) -> tuple[float, float]:
         """The point of the way that lies a lookahead beyond the robot's foot point on it."""

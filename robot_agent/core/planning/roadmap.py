@@ -25,11 +25,12 @@ EDGE_PROBES = (0.25, 0.5, 0.75)
 """Where along an edge its visibility is probed."""
 
 
-def sample_fan(view: View, draws: FloatArray, centre: float, half: float) -> FloatArray:
+def sample_fan(view: View, draws: FloatArray, centre: float, half: float, margin: float) -> FloatArray:
     """Points of the visible region inside the fan, (n, 2) float64 [m], map frame.
 
     draws: (n, 2) uniform in [0, 1): direction, and radius as a share of the free range. centre, half:
-    direction [rad, map frame] and half opening of the fan; it is cut to the field of view.
+    direction [rad, map frame] and half opening of the fan; it is cut to the field of view. margin: room
+    to leave to the end of the laser's range, beyond which anything may stand [m].
     """
     angles = view.fan.angles
     offset = math.remainder(centre - view.pose.heading, 2.0 * math.pi)
@@ -37,7 +38,8 @@ def sample_fan(view: View, draws: FloatArray, centre: float, half: float) -> Flo
     high = max(min(offset + half, float(angles[-1])), float(angles[0]))
     bearing = low + (high - low) * draws[:, 0]
     beam = np.rint((bearing - angles[0]) / (angles[1] - angles[0])).astype(np.intp)
-    radius = view.sight[beam] * np.sqrt(draws[:, 1]) * 0.98
+    reach = np.minimum(view.sight[beam], view.fan.range - margin)
+    radius = reach * np.sqrt(draws[:, 1]) * 0.98
     heading = bearing + view.pose.heading
     return view.origin + np.column_stack((np.cos(heading), np.sin(heading))) * radius[:, None]
 

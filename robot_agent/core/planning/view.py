@@ -28,7 +28,8 @@ class View:
 
     sight: (n_beams,) float64 [m], free range along each beam, laser range where nothing returned.
     obstacles: (n, 2) float64 [m], what the beams hit, team mates left out, and `beside`. Of hits closer
-    together than `grain` some are left out: a clearance c is then wrong by at most grain^2 / (8 c).
+    together than `grain` (a tenth of the inflation) some are left out: a clearance c is then wrong by at
+    most grain^2 / (8 c).
     """
 
     def __init__(
@@ -56,7 +57,7 @@ class View:
             (c * d[:, 0] - s * d[:, 1], s * d[:, 0] + c * d[:, 1])
         )
         hits = self.origin + self.directions[solid] * self.sight[solid, None]
-        self.obstacles: FloatArray = np.concatenate((_thinned(hits, grain), beside))
+        self.obstacles: FloatArray = np.concatenate((_outline(hits, grain), beside))
 
     def polar(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Bearing [rad, relative to the heading, in (-pi, pi]] and distance [m] of (n, 2) points."""
@@ -130,15 +131,18 @@ class Afterimage:
         self.points = points[order[: self.capacity]]
 
 
-def _thinned(hits: FloatArray, grain: float) -> FloatArray:
-    """The same outline with fewer points: hits that fall into one step of `grain` along it become one."""
+def _outline(hits: FloatArray, grain: float) -> FloatArray:
+    """The same outline with other points: one for each step of `grain` along it where hits are dense,
+    and one more between hits that are too far apart to see a wall by, but not far enough to pass.
+    """
     if len(hits) < 3:
         return hits
     step = np.hypot(*np.diff(hits, axis=0).T)
     cell = np.floor(np.cumsum(np.minimum(step, grain)) / grain)
     keep = np.concatenate(([True], np.diff(cell, prepend=0.0) > 0))
     keep[-1] = True
-    return hits[keep]
+    wide = np.flatnonzero((step > 5.0 * grain) & (step < 20.0 * grain))
+    return np.concatenate((hits[keep], 0.5 * (hits[wide] + hits[wide + 1])))
 
 
 def squared_distances(a: FloatArray, b: FloatArray) -> Float32Array:

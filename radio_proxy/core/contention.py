@@ -1,0 +1,171 @@
+"""Who may speak when: carrier sense, inter-frame space and backoff that freezes (802.11-1999, 9.2.5).
+
+Differs: a station that finds the medium idle waits a whole DIFS from that moment, because both measured
+references (ns-3's idle exchange of 7.542 ms, thesis eq. 3.16) count it. A frame handed over in the same
+instant as another station's draws a backoff, because ticks would otherwise make them collide always.
+"""
+
+from collections import deque
+from dataclasses import dataclass, field
+
+from onehop.contracts.messages import Fate
+from radio_proxy.core.airtime import Timing
+from radio_proxy.core.draws import Draws
+from radio_proxy.core.medium import Emission, Medium
+
+EVERYONE = -1
+"""Receiver of a broadcast frame."""
+
+NEVER = 1 << 62
+"""A time that does not come [ns]."""
+
+
+@dataclass(slots=True, eq=False)
+class Frame:
+    """One MSDU for one hop. receiver: station index or EVERYONE; packet: opaque to this layer.
+
+    service_start: when it became the head of its queue [ns]. sinr_db, cause: of the last frame of its
+    exchange that was judged at a receiver.
+    """
+
+    receiver: int
+    msdu_bytes: int
+    packet: object
+    service_start: int = -1
+    attempts: int = 0
+    received: bool = False
+    sinr_db: float = 0.0
+    cause: Fate | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Station:
+    """A network card. slots: backoff left. access: when it will speak, NEVER while frozen [ns].
+
+    idle_start: from when its DIFS counts [ns]. fresh: its head found the medium idle, so it has drawn
+    no backoff yet. gone: its robot left; events that still name it are void.
+    """
+
+    index: int
+    queue: deque[Frame] = field(default_factory=deque)
+    frame: Frame | None = None
+    slots: int = 0
+    access: int = NEVER
+    idle_start: int = 0
+    contending: bool = False
+    fresh: bool = False
+    gone: bool = False
+
+
+class Contention:
+    """The stations that wait for the medium. next_station speaks at next_access unless it freezes."""
+
+    def __init__(self, timing: Timing, medium: Medium, draws: Draws) -> None:
+        self.next_access = NEVER
+        self.next_station: Station | None = None
+        self._timing = timing
+        self._medium = medium
+        self._draws = draws
+        self._sense_db = medium.field.budget.carrier_sense_db
+        self._waiting: list[Station] = []
+
+    def join_with_frame(self, station: Station, now: int, hold_back: bool) -> None:
+        """A new head of a queue: at once after DIFS if the medium is idle, else after a backoff."""
+        medium, index = self._medium, station.index
+        if hold_back or medium.is_busy(index) or medium.reserved_until(index, now) > now:
+            self.join(station, 0, now)
+        else:
+            station.slots = 0
+            station.fresh = True
+            self._enter(station, now)
+
+    def join(self, station: Station, failures: int, now: int) -> None:
+        """Wait with a backoff out of the window after so many failures."""
+        station.slots = self._draws.slots(self._timing.window(failures))
+        self._enter(station, now)
+
+    def take_next(self) -> Station:
+        """The station whose wait is over; on_busy or on_silence must follow."""
+        station = self.next_station
+        assert station is not None
+        self._drop(station)
+        return station
+
+    def leave(self, station: Station) -> None:
+        """The station left the mission."""
+        self._drop(station)
+        self.on_silence()
+
+    def on_silence(self) -> None:
+        """Nobody spoke: find who speaks next."""
+        self.next_access, self.next_station = NEVER, None
+        for station in self._waiting:
+            if station.access < self.next_access:
+                self.next_access, self.next_station = station.access, station
+
+    def on_busy(self, emission: Emission, now: int) -> None:
+        """An emission begins: who senses it keeps the slots that have not passed (9.2.5.2).
+
+        A station about to speak within its turnaround cannot sense it in time and collides.
+        """
+        row, sense_db = emission.row, self._sense_db
+        committed = now + self._timing.turnaround
+        self.next_access, self.next_station = NEVER, None
+        for station in self._waiting:
+            access = station.access
+            if access == NEVER:
+                continue
+            if access > committed and row[station.index] >= sense_db:
+                self._freeze(station, emission, now)
+            elif access < self.next_access:
+                self.next_access, self.next_station = access, station
+
+    def on_idle(self, now: int, answer: list[float] | None = None) -> None:
+        """An emission has ended; whoever now finds the medium idle goes on.
+
+        answer: how an answer that follows after a SIFS will be heard; who senses it does not even start.
+        """
+        on_air, sense_db = self._medium.on_air, self._sense_db
+        for station in self._waiting:
+            if station.access != NEVER or (answer is not None and answer[station.index] >= sense_db):
+                continue
+            if not on_air or not self._medium.is_busy(station.index):
+                self._resume(station, now)
+
+    def on_reservation_unused(self, now: int) -> None:
+        """A reservation was forgotten: nobody waits for its end any more."""
+        for station in self._waiting:
+            if station.access != NEVER and station.idle_start > now:
+                self._resume(station, now)
+        self.on_silence()
+
+    def _drop(self, station: Station) -> None:
+        station.contending = station.fresh = False
+        station.slots = 0
+        station.access = NEVER
+        self._waiting.remove(station)
+
+    def _enter(self, station: Station, now: int) -> None:
+        station.contending = True
+        station.access = NEVER
+        self._waiting.append(station)
+        if not self._medium.is_busy(station.index):
+            self._resume(station, now)
+
+    def _resume(self, station: Station, now: int) -> None:
+        start = now
+        if self._medium.reserved_to > now:
+            start = self._medium.reserved_until(station.index, now)
+        station.idle_start = start
+        station.access = access = start + self._timing.difs + station.slots * self._timing.slot
+        if access < self.next_access:
+            self.next_access, self.next_station = access, station
+
+    def _freeze(self, station: Station, emission: Emission, now: int) -> None:
+        elapsed = now - station.idle_start - self._timing.difs
+        if elapsed > 0:
+            station.slots -= elapsed // self._timing.slot
+        if station.fresh and emission.source != station.index:
+            station.fresh = False
+            station.slots = self._draws.slots(self._timing.window(0))
+        station.access = NEVER

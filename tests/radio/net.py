@@ -1,0 +1,173 @@
+"""A network for routing protocols alone: links that hold or fail, a millisecond a hop, no contention."""
+
+import heapq
+import random
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Any
+
+from onehop.contracts.messages import BROADCAST, Fate
+from radio_proxy.core.message import Data, Message
+from radio_proxy.core.routing.interface import Router
+from radio_proxy.core.routing.mrdv import MrdvRouter
+from radio_proxy.core.routing.mrsr import MrsrRouter
+
+MS = 1_000_000
+HOP_NS = MS
+
+
+@dataclass(frozen=True)
+class Sent:
+    """A packet on the air: when, by whom, to whom (BROADCAST for all), how large."""
+
+    time_ns: int
+    sender: int
+    target: int
+    packet: object
+    size_bytes: int
+
+
+class Host:
+    """A robot's card on the test network."""
+
+    def __init__(self, net: "Net", robot: int, incarnation: int) -> None:
+        self.robot = robot
+        self.incarnation = incarnation
+        self.alive = True
+        self._net = net
+        self.router: Router
+
+    def send(self, packet: object, next_hop: int, size_bytes: int, kind: str, now: int) -> bool:
+        assert (kind == "") == isinstance(packet, Data)
+        self._net.put(self, packet, next_hop, size_bytes, now)
+        return True
+
+    def deliver(self, data: Data, now: int) -> None:
+        self._net.delivered.append((now, data))
+        data.message.settled = True
+        self._net.release(data.message)
+
+    def drop(self, data: Data, fate: Fate) -> None:
+        data.message.loss = (data, fate)
+        self._net.release(data.message)
+
+    def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
+        self._net.at(time_ns, lambda given, now: event(given, now) if self.alive else None, argument)
+
+    def uniform(self) -> float:
+        return self._net.dice.random()
+
+    def speed(self) -> float:
+        return self._net.speed
+
+    def remaining_distance(self) -> float:
+        return self._net.remaining
+
+
+class Net:
+    """Robots, the links among them, and everything that was sent. protocol: "mrdv" or "mrsr"."""
+
+    def __init__(self, protocol: str, robots: Iterable[int], links: Iterable[tuple[int, int]]) -> None:
+        self.protocol = protocol
+        self.now = 0
+        self.dice = random.Random(1)
+        self.speed = 0.0
+        self.remaining = 0.0
+        self.loss: Callable[[int, int], bool] = lambda _sender, _receiver: False
+        self.links = {frozenset(link) for link in links}
+        self.sent: list[Sent] = []
+        self.delivered: list[tuple[int, Data]] = []
+        self.lost: list[tuple[Message, Fate]] = []
+        self._events: list[tuple[int, int, Callable[[Any, int], None], Any]] = []
+        self._sequence = 0
+        self.hosts: dict[int, Host] = {}
+        self.messages: list[Message] = []
+        for robot in robots:
+            self.start(robot, 0)
+
+    def start(self, robot: int, incarnation: int) -> None:
+        """A robot's card comes up with empty tables."""
+        host = Host(self, robot, incarnation)
+        if self.protocol == "mrdv":
+            host.router = MrdvRouter(host, 10.0, self.now)
+        else:
+            host.router = MrsrRouter(host, 10.0)
+        self.hosts[robot] = host
+
+    def stop(self, robot: int) -> None:
+        """A robot's card dies with everything in it."""
+        host = self.hosts.pop(robot)
+        host.alive = False
+        for data in host.router.abandon():
+            host.drop(data, Fate.SENDER_GONE)
+
+    def linked(self, a: int, b: int) -> bool:
+        return frozenset((a, b)) in self.links and a in self.hosts and b in self.hosts
+
+    def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
+        self._sequence += 1
+        heapq.heappush(self._events, (time_ns, self._sequence, event, argument))
+
+    def offer(self, source: int, destination: int) -> Message:
+        """A robot hands over a message now."""
+        message = Message(len(self.messages) + 1, source, destination, b"", 800, self.now)
+        self.messages.append(message)
+        self.hosts[source].router.submit(Data(message, (source,)), self.now)
+        return message
+
+    def run(self, duration_ns: int) -> None:
+        """Everything that happens in the next so many nanoseconds."""
+        until = self.now + duration_ns
+        while self._events and self._events[0][0] <= until:
+            self.now, _, event, argument = heapq.heappop(self._events)
+            event(argument, self.now)
+        self.now = until
+
+    def put(self, host: Host, packet: object, target: int, size_bytes: int, now: int) -> None:
+        self.sent.append(Sent(now, host.robot, target, packet, size_bytes))
+        self.at(now + HOP_NS, self._arrive, (host, packet, target))
+
+    def release(self, message: Message) -> None:
+        """A robot holds a message no more; the last one loses it unless it was delivered."""
+        message.copies -= 1
+        assert message.copies >= 0
+        if not message.settled and message.copies == 0:
+            message.settled = True
+            assert message.loss is not None
+            self.lost.append((message, message.loss[1]))
+
+    def of(self, kind: type) -> list[Sent]:
+        """What was sent of one kind of packet."""
+        return [sent for sent in self.sent if isinstance(sent.packet, kind)]
+
+    def _arrive(self, given: tuple[Host, object, int], now: int) -> None:
+        host, packet, target = given
+        if target == BROADCAST:
+            for robot in sorted(self.hosts):
+                if self.linked(host.robot, robot) and not self.loss(host.robot, robot):
+                    self.hosts[robot].router.on_packet(packet, host.robot, now)
+            return
+        reached = host.alive and self.linked(host.robot, target) and not self.loss(host.robot, target)
+        if reached:
+            self._receive(host, packet, target, now)
+        if not host.alive:
+            if isinstance(packet, Data):
+                host.drop(packet, Fate.SENDER_GONE)
+        elif reached and not self.loss(target, host.robot):
+            if isinstance(packet, Data):
+                self.release(packet.message)
+            host.router.on_acknowledged(packet, target, now)
+        else:
+            failed = packet.tried(7) if isinstance(packet, Data) else packet
+            host.router.on_undeliverable(failed, target, Fate.BELOW_THRESHOLD, now)
+
+    def _receive(self, host: Host, packet: object, target: int, now: int) -> None:
+        if isinstance(packet, Data):
+            packet.message.copies += 1
+            packet = packet.moved(target, 1)
+        self.hosts[target].router.on_packet(packet, host.robot, now)
+
+
+def chain(protocol: str, robots: int) -> Net:
+    """Robots 1..n, each linked to the next."""
+    return Net(protocol, range(1, robots + 1), [(i, i + 1) for i in range(1, robots)])
