@@ -14,9 +14,10 @@ Differs: a slot behind the robot is turned to on the spot first, not driven to b
 import math
 from collections.abc import Sequence
 
-from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_local, wrap_angle
+from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Ranges
 from onehop.contracts.scenario import GainsSection, RobotSection
+from robot_agent.core.pursuit import Pursuit
 from robot_agent.core.scan import Fan
 from robot_agent.core.steering import LOOKAHEAD, Steering
 from robot_agent.core.tracking import PolarError, polar_error, polar_twist, turn_towards, within_limits
@@ -30,14 +31,11 @@ RESTING = 0.08
 FACING = 1.2
 """A target at a greater bearing is turned to on the spot [rad]."""
 
-BLOCKED_TICKS, CLEAR_TICKS = 10, 6
+BLOCKED_TICKS, CLEAR_TICKS = 10, 4
 """Ticks in a row after which an obstacle counts as in the way, and as passed: no flutter of modes."""
 
-IN_SIGHT = 9.5
-"""Points of the trail farther away than this are not looked for [m]: the laser ends at 10 m."""
-
-REACHED = 0.7
-"""A point of the trail is passed within this distance [m]."""
+WATCH_TICKS = 10
+"""Ticks from one look for the leader's trail to the next while the way is clear."""
 
 REACTION = 0.4
 """A robot drives at most as fast as lets it stop within this time before what it sees [s]."""
@@ -56,6 +54,7 @@ class Follower:
         self._body = body
         self._gains = gains
         self._steering = Steering(body, fan)
+        self._pursuit = Pursuit(self._steering)
         self._dodge = dodge
         self._dodges = 0
         self._blocked = 0
@@ -64,8 +63,7 @@ class Follower:
         self._side = 0
         self._escape = 0
         self._escape_side = 1
-        self._aim: tuple[float, float] | None = None
-        self._aim_age = 0
+        self._age = 0
         self._held: tuple[float, float] | None = None
         self.border = False
 
@@ -96,10 +94,12 @@ class Follower:
             self.halt()
             turn = wrap_angle(target.heading - pose.heading)
             return turn_towards(turn, self._gains, self._body) if abs(turn) > 0.05 else STANDSTILL
-        if nearest > min(LOOKAHEAD, rho + 0.5):
-            self._clear()
-            if not self.border:
-                return self._track(error, bearing, k_rho, LOOKAHEAD)
+        self._age += 1
+        if self._age % WATCH_TICKS == 0:
+            self._steering.look(scan)
+            self._pursuit.watch(pose, trail)
+        if not self.border and nearest > min(LOOKAHEAD, rho + 0.5):
+            return self._track(error, bearing, k_rho, LOOKAHEAD)
         if self._held is not None:
             course, speed = self._held
             self._held = None
@@ -125,7 +125,7 @@ class Follower:
         self._blocked = 0
         self._clear_for += 1
         if self._clear_for >= CLEAR_TICKS:
-            self.border, self._side, self._aim = False, 0, None
+            self.border, self._side = False, 0
 
     def _track(self, error: PolarError, bearing: float, k_rho: float, free: float) -> Twist:
         """The way to the slot is clear: thesis eq. 3.11, 3.12."""
@@ -152,19 +152,17 @@ class Follower:
         """Something is in the way: around it, or along its border."""
         distance = pace = rho
         side = 0
-        aim = self._trail_aim(pose, trail) if self.border else None
-        if aim is not None:
-            x, y = to_local(pose, *aim)
-            last = aim == trail[-1]
-            if last and math.hypot(x, y) <= standoff:
-                if leader_moves:
-                    return turn_towards(bearing, self._gains, self._body)
-                side = self._side
-            else:
-                distance, bearing = math.hypot(x, y), math.atan2(y, x)
-                pace = distance - standoff if last else rho
-        elif self.border:
+        aim = self._pursuit.aim(pose, trail) if self.border else None
+        if aim is None:
+            side = self._side if self.border else 0
+        elif aim.last and aim.distance <= standoff:
+            if leader_moves:
+                return turn_towards(bearing, self._gains, self._body)
             side = self._side
+        else:
+            distance, bearing = aim.distance, aim.bearing
+            pace = distance - standoff if aim.last else rho
+            side = 0 if aim.in_sight else self._side
         if self._escape:
             return self._escaped()
         if abs(bearing) > FACING:
@@ -188,33 +186,6 @@ class Follower:
         """Drive in a direction, slowly while it is still turned to."""
         facing = max(0.0, math.cos(direction)) ** 2
         return Twist(speed * facing, turn_towards(direction, self._gains, self._body).w)
-
-    def _trail_aim(self, pose: Pose, trail: Sequence[tuple[float, float]]) -> tuple[float, float] | None:
-        """The newest point of the leader's trail that is in sight; kept for a quarter of a second."""
-        self._aim_age -= 1
-        if not trail:
-            self._aim = None
-            return None
-        if self._aim is not None and self._aim_age > 0:
-            return self._aim
-        self._aim_age = 5
-        self._aim = None
-        for point in reversed(trail):
-            x, y = to_local(pose, *point)
-            distance = math.hypot(x, y)
-            if x >= 0.0 and distance < IN_SIGHT:
-                bearing = math.atan2(y, x)
-                free = self._steering.free_distance(bearing, tight=True)
-                if free >= min(distance, LOOKAHEAD) and self._steering.sees(bearing, distance):
-                    self._aim = point
-                    break
-        if self._aim is None:
-            away = [math.hypot(x - pose.x, y - pose.y) for x, y in trail]
-            nearest = away.index(min(away))
-            if away[nearest] < REACHED and nearest < len(trail) - 1:
-                nearest += 1
-            self._aim = trail[nearest]
-        return self._aim
 
     def _stuck(self) -> None:
         self._idle += 1
