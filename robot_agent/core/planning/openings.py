@@ -52,6 +52,7 @@ class Openings:
         before = self.place
         if nearest == NOTHING or (distance > 1.2 * self.spacing and memory.has_room):
             self.place = memory.add(pose.x, pose.y, PLACE)
+            self.gaze[self.place] = pose.heading
         elif distance < 1.8 * self.inflation:
             self.place = nearest
         if before == NOTHING:
@@ -84,21 +85,25 @@ class Openings:
         candidates = candidates[self._worth(roadmap.points[candidates], record)]
         value = costs[candidates] + np.hypot(*(roadmap.points[candidates] - self.goal).T)
         offset = math.dist(view.origin, self.memory.xy[self.place])
-        fresh: list[int] = []
+        decided: list[int] = []
         for point in candidates[np.argsort(value, kind="stable")].tolist():
             here = roadmap.points[point]
             if not self.memory.has_room:
                 break
-            if all(math.dist(here, roadmap.points[p]) >= self.spacing for p in fresh):
-                fresh.append(point)
+            if any(math.dist(here, roadmap.points[p]) < self.spacing for p in decided):
+                continue
+            decided.append(point)
+            if self._closer(here[None], record)[0] or not self._seen_before(view, here):
                 number = self.memory.add(float(here[0]), float(here[1]), OPENING)
                 self.gaze[number] = outward[int(np.argmin(near_rim[point]))]
                 self.moves[number] = 0
                 self.memory.join(self.place, number, float(costs[point]) + offset)
 
     def _worth(self, points: FloatArray, record: float) -> BoolArray:
-        """Which (n, 2) points are worth a new opening: far enough from openings, and either closer to the
-        goal than the robot ever was, or far enough from places and closed openings.
+        """Which (n, 2) points are worth a new opening.
+
+        They are far enough from other openings, and either closer to the goal than the robot ever was, or
+        far enough from places and closed openings.
         """
         nearest = {
             kind: squared_distances(points, self.memory.xy[self.memory.of_kind(kind)]).min(
@@ -106,9 +111,27 @@ class Openings:
             )
             for kind in (PLACE, OPENING, CLOSED)
         }
-        progress = np.hypot(*(points - self.goal).T) < record - self.inflation
         new = (nearest[PLACE] >= self.spacing**2) & (nearest[CLOSED] >= 0.25 * self.spacing**2)
-        return np.asarray((nearest[OPENING] >= self.spacing**2) & (new | progress))
+        return np.asarray((nearest[OPENING] >= self.spacing**2) & (new | self._closer(points, record)))
+
+    def _closer(self, points: FloatArray, record: float) -> BoolArray:
+        """Which (n, 2) points are closer to the goal than the robot ever was, by a step."""
+        return np.asarray(np.hypot(*(points - self.goal).T) < record - self.inflation)
+
+    def _seen_before(self, view: View, point: FloatArray) -> bool:
+        """Did the robot look at this place from near by before? Then it was judged there and then.
+
+        A place looked at what lay before it; nothing known now may stand in between.
+        """
+        places = self.memory.of_kind(PLACE)
+        offset = point - self.memory.xy[places]
+        near = np.hypot(*offset.T) < 0.6 * view.fan.range
+        before = np.cos(np.arctan2(offset[:, 1], offset[:, 0]) - self.gaze[places]) > 0.1
+        places = places[near & before & (places != self.place)]
+        if not len(places):
+            return False
+        ends = np.broadcast_to(point, (len(places), 2))
+        return bool(view.passable(self.memory.xy[places], ends, 0.3 * self.inflation).any())
 
     def _refute(self, view: View, rim: FloatArray, known: list[int], candidates: FloatArray) -> None:
         """Openings in full view with nothing unseen around them: move them on with the edge of the
@@ -160,12 +183,12 @@ class Openings:
 
     def closest_place(self, cost: dict[int, float]) -> int:
         """The reachable place that is closest to the goal."""
-        places = [n for n in self.memory.of_kind(PLACE).tolist() if n in cost]
+        places: list[int] = [n for n in self.memory.of_kind(PLACE).tolist() if n in cost]
         return min(places, key=lambda n: (math.dist(self.memory.xy[n], self.goal), n))
 
 
 def edge_samples(view: View, margin: float) -> FloatArray:
-    """Points for the road map where outlines leave the laser's range, (n, 2) [m]: chance may miss them."""
+    """Points where outlines leave the laser's range, (n, 2) [m]: chance may miss them."""
     beside = np.convolve(~view.open_beams, np.ones(13), mode="same") > 0
     far = np.flatnonzero(view.open_beams & beside)
     return view.origin + view.directions[far] * (view.fan.range - margin)

@@ -41,13 +41,14 @@ def sample_fan(view: View, draws: FloatArray, centre: float, half: float, margin
     reach = np.minimum(view.sight[beam], view.fan.range - margin)
     radius = reach * np.sqrt(draws[:, 1]) * 0.98
     heading = bearing + view.pose.heading
-    return view.origin + np.column_stack((np.cos(heading), np.sin(heading))) * radius[:, None]
+    directions = np.column_stack((np.cos(heading), np.sin(heading)))
+    return np.asarray(view.origin + directions * radius[:, None])
 
 
 class RoadMap:
     """Points known to be free, with edges known to be clear. Point 0 is the robot (virtual start).
 
-    points: (n, 2) float64 [m]. marks: for each point the index of the given extra point that it is, or -1.
+    points: (n, 2) float64 [m]. marks: (n,) index of the extra point that a point is, or -1.
     """
 
     def __init__(
@@ -122,7 +123,7 @@ class RoadMap:
         return np.concatenate((self.points[a], self.points[b]), axis=1)
 
     def costs(self) -> FloatArray:
-        """Length of the shortest way from the robot to every point, (n,) [m]; inf where there is none."""
+        """Length of the shortest way from the robot to each point, (n,) [m]; inf where there is none."""
         cost = np.full(len(self.points), np.inf)
         cost[0] = 0.0
         while self.lengths.shape[1]:

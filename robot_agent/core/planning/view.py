@@ -84,10 +84,10 @@ class View:
         obstacle may move out of it, not further in.
         """
         have = squared_distances(self.origin[None], self.obstacles)[0]
-        return np.minimum(clearance**2, np.maximum(np.sqrt(have) - 0.01, 0.0) ** 2)
+        return np.asarray(np.minimum(clearance**2, np.maximum(np.sqrt(have) - 0.01, 0.0) ** 2))
 
     def free(self, points: FloatArray, clearance: float) -> tuple[BoolArray, FloatArray]:
-        """Which (n, 2) points keep `clearance` (or the allowance), and the room that each has, (n,) [m]."""
+        """Which (n, 2) points keep `clearance` (or the allowance), and the room of each, (n,) [m]."""
         distance2 = squared_distances(points, self.obstacles)
         keeps = (distance2 >= self.allowance(clearance)).all(axis=1)
         return np.asarray(keeps), np.sqrt(distance2.min(axis=1, initial=np.inf))
