@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 from onehop.contracts.messages import Cut, Jam, Presence
 from onehop.contracts.scenario import RadioSection
+from radio_proxy.core.airtime import delay_ns
 
 WAVE_SPEED = 3.0e8
 """Rounded as in the sums that the thesis's and ns-3's path losses come from [m/s]."""
@@ -134,6 +135,7 @@ class Field:
         self._place: dict[int, tuple[float, float]] = {}
         self._rows: dict[int, list[float]] = {}
         self._sensed_by_all: dict[int, bool] = {}
+        self._delays: dict[tuple[int, int], int] = {}
         self._cells: dict[tuple[int, int], list[int]] = {}
         self._cuts: tuple[Cut, ...] = ()
         self.noise_rise_db: list[float] = [0.0] * self._count
@@ -158,6 +160,13 @@ class Field:
         if row is None:
             row = self._rows[sender] = self._hear(sender)
         return row
+
+    def delay_ns(self, a: int, b: int) -> int:
+        """Propagation delay between two robots in this tick."""
+        delay = self._delays.get((a, b))
+        if self._stale or delay is None:
+            delay = self._delays[a, b] = delay_ns(self.distance(a, b))
+        return delay
 
     def distance(self, a: int, b: int) -> float:
         """Distance between two robots [m]; 0 when one of them is absent."""
@@ -191,6 +200,7 @@ class Field:
         self._stale = False
         self._rows = {}
         self._sensed_by_all = {}
+        self._delays = {}
         self._cells = {}
         self._place = {}
         reach = self.budget.reach
