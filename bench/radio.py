@@ -127,7 +127,8 @@ def sparse(robots: int) -> dict[str, object]:
     """Time that one message a tick costs a pair alone in reach of each other, above an idle tick."""
     section = RadioSection(routing="direct", path_loss_exponent=4.0)
     means = []
-    for outboxes in ({}, {1: (Transmission(2, b"", 800),)}):
+    talk: Outboxes = {1: (Transmission(2, b"", 800),)}
+    for outboxes in ({}, talk):
         mission = Mission(robots, 80.0, section)
         first, second, *others = mission.present
         near = replace(second, pose=Pose(first.pose.x + 1.0, first.pose.y, 0.0))
@@ -135,7 +136,11 @@ def sparse(robots: int) -> dict[str, object]:
         for _ in range(20 * TICKS_PER_SECOND):
             mission.step(outboxes)
         means.append(mission.figures()["mean_ms"])
-    return {"robots": robots, "delivered": mission.delivered, "ms_above_idle": means[1] - means[0]}
+    return {
+        "robots": robots,
+        "delivered": mission.delivered,
+        "ms_above_idle": round(means[1] - means[0], 4),
+    }
 
 
 def engine(stations: int, seconds: float) -> dict[str, object]:
