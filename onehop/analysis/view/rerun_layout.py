@@ -62,7 +62,7 @@ def _plot(log: Log, title: str, field: str) -> Any:
     import rerun as rr
     import rerun.blueprint as rrb
 
-    overrides: dict[str, Any] = {}
+    overrides: dict[Any, Any] = {}
     for robot, colour in robot_colours(log.robots).items():
         mapping = rrb.encodings.VisualizerComponentMapping(
             target="Scalars:scalars", source_kind=rrb.encodings.ComponentSourceKind.SourceComponent,
@@ -70,4 +70,4 @@ def _plot(log: Log, title: str, field: str) -> Any:
         )  # fmt: skip
         line = rr.SeriesLines(colors=[round(255 * part) for part in rgb(colour)], names=[f"{robot}"])
         overrides[f"/{robot_name(robot)}/link"] = line.visualizer(mappings=[mapping])
-    return rrb.TimeSeriesView(name=title, origin="/", contents=list(overrides), overrides={**overrides})
+    return rrb.TimeSeriesView(name=title, origin="/", contents=list(overrides), overrides=overrides)
