@@ -82,6 +82,18 @@ class Percept:
     inbox: tuple[Reception, ...]
 
 
+def percept(observation: Observation, inbox: Inbox) -> Percept:
+    """What a robot knows at a tick, from the two messages that it got for it."""
+    return Percept(
+        observation.tick,
+        observation.time_ns,
+        observation.pose,
+        observation.twist,
+        observation.scan,
+        inbox.receptions,
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Transmission:
     """One message handed to the network card; destination is a robot id or BROADCAST.
@@ -288,3 +300,33 @@ class Outcome:
     ticks: int
     sim_s: float
     collisions: int
+
+
+@dataclass(frozen=True, slots=True)
+class End:
+    """World to all: the mission is over (key end). last_tick: the last one that was begun.
+
+    wall_s: wall-clock time of the ticks; it is for people and stays out of the log.
+    """
+
+    outcome: Outcome
+    last_tick: int
+    wall_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class RobotProgress:
+    """One line of the progress display; speed [m/s]."""
+
+    robot: int
+    speed: float
+    status: Status
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """World to operator, a few times a second (key progress): how far the mission is."""
+
+    tick: int
+    time_ns: int
+    robots: tuple[RobotProgress, ...]

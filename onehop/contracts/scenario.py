@@ -119,14 +119,20 @@ class RobotSection:
 class GainsSection:
     """Gains of the tracking controller (thesis eq. 3.11, 3.12) and the policy of k_rho.
 
-    policy: "throughput" (thesis: k_rho_max below the threshold) or "constant" (always k_rho_min).
+    policy: "throughput" (thesis: k_rho_max below the threshold), "constant" (always k_rho_min), or
+    "smooth" (ours: rises in proportion to the deficit of a filtered throughput, and to its fall).
+    threshold: "thesis" (0.5333e6 bit/s for all) or "ideal" (the same share of the ideal throughput at
+    this rate and size of Next). reverse: drive backwards to a slot that lies behind (thesis eq. 3.10);
+    that is blind, so the default is to turn on the spot first.
     """
 
     k_alpha: float = 8.0
     k_beta: float = -1.5
     k_rho_min: float = 1.0
     k_rho_max: float = 3.0
-    policy: Literal["throughput", "constant"] = "throughput"
+    policy: Literal["throughput", "constant", "smooth"] = "throughput"
+    threshold: Literal["thesis", "ideal"] = "thesis"
+    reverse: bool = False
 
     def problems(self) -> Iterator[Problem]:
         yield from _positive(self, "k_rho_min")
@@ -150,6 +156,13 @@ class TeamSection:
     lost_after: missing acknowledgements in a row until a follower is given up.
     leader_timeout: silence until a follower gives up its leader [s]. setup_timeout [s].
     next_msdu_bytes: size of Next on the air (thesis 3.7).
+
+    profile: "thesis" (its rules alone) or "team" (epochs, yielding, joining; team.md).
+    orphan: what a robot of profile "thesis" does that hears nobody any more: "stop", or go "solo"
+    (thesis 3.8.1). successor_timeout: silence of an elected leader until it is given up too [s].
+    narrow_spacing: distance between neighbours in the column of a narrow passage [m].
+    straggler_speed: share of leader_speed while a follower is more than a spacing behind; 1 = the
+    leader never waits (thesis 3.8.2).
     """
 
     size: int = 6
@@ -157,9 +170,14 @@ class TeamSection:
     spacing: float = 4.0
     next_period: float = 2.0
     lost_after: int = 2
-    leader_timeout: float = 6.0
+    leader_timeout: float = 5.0
     setup_timeout: float = 40.0
     next_msdu_bytes: int = 800
+    profile: Literal["team", "thesis"] = "team"
+    orphan: Literal["stop", "solo"] = "stop"
+    successor_timeout: float = 1.0
+    narrow_spacing: float = 1.5
+    straggler_speed: float = 1.0
 
     @property
     def robots(self) -> tuple[int, ...]:
@@ -167,8 +185,17 @@ class TeamSection:
 
     def problems(self) -> Iterator[Problem]:
         yield from _positive(
-            self, "size", "spacing", "next_period", "lost_after", "leader_timeout", "setup_timeout"
-        )
+            self, "size", "spacing", "next_period", "lost_after", "leader_timeout", "setup_timeout",
+            "successor_timeout", "narrow_spacing", "straggler_speed",
+        )  # fmt: skip
+        if self.straggler_speed > 1:
+            yield Problem("straggler_speed", f"{self.straggler_speed} is above 1", "a share, 0 < s <= 1")
+        if self.leader_timeout < self.next_period:
+            yield Problem(
+                "leader_timeout",
+                f"{self.leader_timeout} s is less than next_period",
+                f"at least {self.next_period} s",
+            )
         duplicates = sorted({i for i in self.ids if self.ids.count(i) > 1})
         if duplicates:
             yield Problem("ids", f"robot {duplicates[0]} stands twice", "every id once")
@@ -183,15 +210,19 @@ class PlannerSection:
     """Way-finding of the leader (thesis 3.4). inflation: clearance kept from obstacles [m].
 
     samples: points a road map. classify_range: obstacles nearer than this turn the fan [m].
+    memory: way points that `escape` can remember. patience: distance that it may search without coming
+    closer to the goal, in laser ranges.
     """
 
     kind: Literal["escape", "modified", "original"] = "escape"
     samples: int = 200
     inflation: float = 0.5
     classify_range: float = 3.0
+    memory: int = 1024
+    patience: float = 50.0
 
     def problems(self) -> Iterator[Problem]:
-        yield from _positive(self, "samples", "inflation", "classify_range")
+        yield from _positive(self, "samples", "inflation", "classify_range", "memory", "patience")
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,11 +295,13 @@ class RadioSection:
 
 @dataclass(frozen=True, slots=True)
 class ClockSection:
-    """period_ms: length of a tick. limit_s: simulated time after which a mission has failed.
+    """mode: lockstep, everyone waits for its inputs of a tick. period_ms: length of a tick.
 
+    limit_s: simulated time after which a mission has failed.
     silence_s: wall-clock time after which a process that says nothing is given up [s].
     """
 
+    mode: Literal["lockstep"] = "lockstep"
     period_ms: int = 50
     limit_s: float = 900.0
     silence_s: float = 10.0

@@ -27,10 +27,31 @@ def out(robot: int | str) -> str:
     return f"out/{robot}"
 
 
+def fate(robot: int | str) -> str:
+    """World to robot: a scripted kill, which the robot's process carries out on itself."""
+    return f"fate/{robot}"
+
+
 TRUTH = "truth"
+"""World to radio: ground truth of tick k, and what was offered to the air."""
+
 ETHER = "ether"
+"""Log channel of the radio's verdicts; on the bus they travel in the radio's record."""
+
 END = "end"
+"""World to all: the mission is over, and how."""
+
 PROGRESS = "progress"
+"""World to operator: a few numbers for people, some times a second."""
+
+CONTROL = "control"
+"""Operator to world: end the mission now."""
+
+RESTART = "restart"
+"""World to operator: start the process of this robot again."""
+
+RESULT = "result"
+"""Recorder to operator: summary of the finished log."""
 
 
 def alive(name: str) -> str:

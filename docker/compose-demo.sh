@@ -1,0 +1,25 @@
+#!/usr/bin/env bash
+# The mission of compose.yaml to its end, and its digest beside that of the same mission in one process.
+# Where the official base image cannot be pulled, a local one is made from this machine's Python.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+if docker compose version >/dev/null 2>&1; then compose=(docker compose); else compose=(docker-compose); fi
+compose+=(--project-name onehop-demo --file compose.yaml)
+
+export ONEHOP_BASE=${ONEHOP_BASE:-python:3.11-slim}
+if ! docker image inspect "$ONEHOP_BASE" >/dev/null 2>&1 && ! timeout 120 docker pull --quiet "$ONEHOP_BASE" 2>/dev/null; then
+  echo "$ONEHOP_BASE cannot be pulled: making a base image from this machine's Python"
+  ONEHOP_BASE=onehop-local-base
+  .venv/bin/python docker/local_base.py "$ONEHOP_BASE"
+fi
+
+mkdir -p runs/compose
+rm -f runs/compose/mission.mcap runs/compose/summary.json
+trap '"${compose[@]}" down --volumes --timeout 5 >/dev/null 2>&1' EXIT
+"${compose[@]}" build world
+timeout 300 "${compose[@]}" up --no-build --no-color >runs/compose/containers.log 2>&1 || {
+  tail -n 40 runs/compose/containers.log
+  exit 1
+}
+.venv/bin/python docker/compare_digests.py runs/compose/summary.json "${ONEHOP_SCENARIO:-scenarios/map1.toml}"

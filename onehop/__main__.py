@@ -1,0 +1,3 @@
+from onehop.cli import main
+
+main()

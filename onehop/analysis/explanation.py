@@ -1,0 +1,217 @@
+"""Why one robot did what it did at one moment, from the log alone.
+
+Its own words (status and notes), the messages that it was sent and what became of them, and the faults
+in force around it. Nothing is simulated.
+"""
+
+import math
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from onehop.analysis.frames import Frame, join
+from onehop.analysis.log import Log
+from onehop.analysis.readable import content_of
+from onehop.analysis.tables import Table
+from onehop.analysis.timeline import departures
+from onehop.contracts.errors import InputError
+from onehop.contracts.messages import Truth
+from onehop.contracts.scenario import GainsSection, TeamSection
+from robot_agent.core.messages import Command
+
+WINDOW_S = 6.0
+"""Messages and events of this long before the moment are told [s]: three periods of Next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Since:
+    """A value, and since when it has been so [s]."""
+
+    value: Any
+    since_s: float
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """One robot at one moment. left: when and why it left, if it is not there at at_s.
+
+    mode_change: the note of the last change of mode {mode, was, on}, None at the start. next_s: arrival
+    of the last command from its leader, None when there was none. heard: messages to it and from it in
+    the window, in order. status, pose: last row of the tables `status` and `poses` as plain values.
+    """
+
+    robot: int
+    asked_s: float
+    at_s: float
+    tick: int
+    left: dict[str, Any] | None
+    mode: Since
+    mode_change: dict[str, Any] | None
+    roster: Since
+    k_rho: Since
+    status: dict[str, Any]
+    pose: dict[str, Any]
+    next_s: float | None
+    heard: tuple[Frame, ...]
+    events: tuple[dict[str, Any], ...]
+    faults: tuple[str, ...]
+    gains: GainsSection
+    team: TeamSection
+
+    def as_json(self) -> dict[str, Any]:
+        """Everything as plain values; lost messages have no arrival."""
+        status = {**self.status, "members": list(self.status["members"])}
+        return {
+            "robot": self.robot,
+            "at_s": self.at_s,
+            "tick": self.tick,
+            "present": self.left is None,
+            "left": self.left,
+            "mode": {**asdict(self.mode), "change": self.mode_change},
+            "roster": asdict(self.roster),
+            "k_rho": asdict(self.k_rho),
+            "error": status["error"],
+            "status": status,
+            "pose": self.pose,
+            "last_next_s": self.next_s,
+            "frames": [_frame_json(frame) for frame in self.heard],
+            "events": list(self.events),
+            "faults": list(self.faults),
+        }
+
+
+def _frame_json(frame: Frame) -> dict[str, Any]:
+    plain = asdict(frame)
+    del plain["message"]
+    plain["says"] = content_of(frame.message)
+    plain["path"] = list(frame.path)
+    plain["arrival_s"] = None if math.isnan(frame.arrival_s) else frame.arrival_s
+    return plain
+
+
+def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Explanation:
+    """Raises InputError for a robot that is not in the team or a moment outside the log."""
+    if robot not in log.robots:
+        raise InputError(
+            f"--robot {robot}", "is not in the team", f"one of {', '.join(map(str, log.robots))}"
+        )
+    tables = log.tables("status", "notes", robots=[robot], end_s=at_s)
+    ground = log.tables("poses", "departures", "verdicts", "offers", end_s=at_s)
+    status, poses = tables["status"], ground["poses"].of(robot)
+    if at_s < 0 or not len(status):
+        raise InputError(f"--at {at_s:g}", "the robot has not acted by then", "a later time [s]")
+    tick = int(status["tick"][-1])
+    here = poses.where(poses["tick"] <= tick)
+    left = _left(ground, robot, tick)
+    if left is None and at_s > float(status["time_s"][-1]) + 2 * log.period_ns / 1e9:
+        raise InputError(
+            f"--at {at_s:g}", "the log ends before that", f"at most {status['time_s'][-1]:g} s"
+        )
+    own = [frame for frame in join(ground["verdicts"], ground["offers"]) if _concerns(frame, robot)]
+    changes = [data for kind, data in _notes(tables["notes"]) if kind == "mode"]
+    last_s = float(status["time_s"][-1])
+    return Explanation(
+        robot=robot,
+        asked_s=at_s,
+        at_s=last_s,
+        tick=tick,
+        left=left,
+        mode=_since(status, "mode"),
+        mode_change=changes[-1] if changes else None,
+        roster=_roster_since(status),
+        k_rho=_since(status, "k_rho"),
+        status=_row(status),
+        pose=_row(here),
+        next_s=_last_command(own, robot, int(status["leader"][-1])),
+        heard=tuple(frame for frame in own if frame.settled_s > last_s - window_s),
+        events=_events(tables["notes"], last_s - window_s),
+        faults=tuple(_faults(log, robot, last_s)),
+        gains=log.scenario.gains,
+        team=log.scenario.team,
+    )
+
+
+def _concerns(frame: Frame, robot: int) -> bool:
+    return robot in (frame.receiver, frame.source)
+
+
+def _left(ground: dict[str, Table], robot: int, tick: int) -> dict[str, Any] | None:
+    gone = [d for d in departures(ground["poses"], ground["departures"]) if d.robot == robot]
+    present = ground["poses"].of(robot)["tick"]
+    if not gone or (len(present) and present[-1] > tick):
+        return None
+    return {"at_s": gone[-1].at_s, "why": gone[-1].why}
+
+
+def _notes(notes: Table) -> list[tuple[str, dict[str, Any]]]:
+    return list(zip(notes["kind"].tolist(), notes["data"], strict=True))
+
+
+def _since(status: Table, name: str) -> Since:
+    column = status[name]
+    other = np.flatnonzero(column != column[-1])
+    row = int(other[-1]) + 1 if len(other) else 0
+    return Since(column[-1].item(), float(status["time_s"][row]))
+
+
+def _roster_since(status: Table) -> Since:
+    keys = list(zip(status["epoch"].tolist(), status["members"], status["shape"].tolist(), strict=True))
+    row = len(keys) - 1
+    while row > 0 and keys[row - 1] == keys[-1]:
+        row -= 1
+    epoch, members, shape = keys[-1]
+    roster = {
+        "leader": int(status["leader"][-1]), "epoch": epoch, "members": list(members), "shape": shape,
+    }  # fmt: skip
+    return Since(roster, float(status["time_s"][row]))
+
+
+def _row(table: Table) -> dict[str, Any]:
+    if not len(table):
+        return {}
+    return {
+        name: column[-1] if column.dtype == object else column[-1].item()
+        for name, column in table.items()
+    }
+
+
+def _last_command(own: list[Frame], robot: int, leader: int) -> float | None:
+    arrivals = [
+        frame.arrival_s
+        for frame in own
+        if frame.delivered
+        and frame.receiver == robot
+        and frame.source == leader
+        and isinstance(frame.message, Command)
+    ]
+    return max(arrivals, default=None)
+
+
+def _events(notes: Table, start_s: float) -> tuple[dict[str, Any], ...]:
+    return tuple(
+        {"at_s": time_s, "kind": kind, **data}
+        for time_s, (kind, data) in zip(notes["time_s"].tolist(), _notes(notes), strict=True)
+        if time_s > start_s
+    )
+
+
+def _faults(log: Log, robot: int, at_s: float) -> list[str]:
+    truth: Truth | None = next((truth for _, truth in log.truths(at_s, at_s)), None)
+    if truth is None:
+        return []
+    words = []
+    for presence in truth.present:
+        if presence.robot == robot:
+            if presence.held:
+                words.append("it is held: it stands still whatever it commands")
+            words += [
+                f"jammed: inside {jam.radius:g} m of ({jam.x:g}, {jam.y:g})"
+                for jam in truth.jams
+                if math.hypot(presence.pose.x - jam.x, presence.pose.y - jam.y) <= jam.radius
+            ]
+    for cut in truth.cuts:
+        for mine, other in ((cut.side_a, cut.side_b), (cut.side_b, cut.side_a)):
+            if robot in mine:
+                words.append(f"cut off from {', '.join(map(str, other))}")
+    return words

@@ -1,0 +1,147 @@
+"""Open a log for reading in Python: typed messages, and tables of columns, of any stretch of time.
+
+    from onehop.analysis import open_log
+
+    log = open_log("runs/map1/mission.mcap")
+    log.scenario.team.robots              # what was run
+    status = log.table("status", robots=[5])
+    status["time_s"], status["error"]     # NumPy columns
+    for tick, truth in log.truths(60, 70): ...
+
+Nothing is held in memory but what was asked for; a stretch of time is found without unpacking the rest.
+"""
+
+import json
+from collections.abc import Iterable, Iterator
+from io import BytesIO
+from pathlib import Path
+from typing import Any, TypeVar
+
+from mcap.data_stream import ReadDataStream
+from mcap.opcode import Opcode
+from mcap.records import Metadata
+
+from onehop.analysis.selection import Selected, one_of, select, walk
+from onehop.analysis.tables import TABLES, Table, build
+from onehop.contracts import topics
+from onehop.contracts.errors import InputError
+from onehop.contracts.messages import Action, Ether, Inbox, Observation, Truth
+from onehop.contracts.scenario import Scenario
+from onehop.drive.codec import decode
+from onehop.drive.log_reader import LogFile
+from onehop.scenario_file import Bundle
+
+M = TypeVar("M")
+
+
+class Log:
+    """One mission's log, sound or torn.
+
+    scenario, bundle: what was run. metadata: versions, driver. summary: what `onehop run` printed, None
+    if the log ends before the mission did. torn: its recorder was killed.
+    """
+
+    def __init__(self, file: LogFile) -> None:
+        self.path = file.path
+        self.bundle: Bundle = file.bundle
+        self.scenario: Scenario = file.bundle.scenario
+        self.metadata = file.metadata
+        self.period_ns = self.scenario.clock.period_ns
+        self.summary: dict[str, Any] | None = None
+        self.torn = True
+        self._read_end()
+
+    def _read_end(self) -> None:
+        with self.path.open("rb") as stream:
+            for opcode, length in walk(stream):
+                if opcode == Opcode.METADATA:
+                    record = Metadata.read(ReadDataStream(BytesIO(stream.read(length))))
+                    if record.name == "outcome":
+                        self.summary = json.loads(record.metadata["summary"])
+                self.torn = opcode != Opcode.FOOTER
+
+    @property
+    def robots(self) -> tuple[int, ...]:
+        """Ids of the team, sorted."""
+        return self.scenario.team.robots
+
+    def tick_at(self, time_s: float) -> int:
+        """The tick of a simulated time [s]."""
+        return round(time_s * 1e9 / self.period_ns)
+
+    def messages(
+        self, *keys: str, start_s: float = 0.0, end_s: float | None = None
+    ) -> Iterator[Selected]:
+        """Raw wire messages of bus keys, e.g. "truth", "out/3", "out/" (all robots), within a time."""
+        last = None if end_s is None else self.tick_at(end_s)
+        return select(self.path, one_of(*keys), self.period_ns, self.tick_at(start_s), last)
+
+    def truths(self, start_s: float = 0.0, end_s: float | None = None) -> Iterator[tuple[int, Truth]]:
+        """(tick, ground truth)."""
+        return self._typed(Truth, topics.TRUTH, start_s, end_s)
+
+    def ethers(self, start_s: float = 0.0, end_s: float | None = None) -> Iterator[tuple[int, Ether]]:
+        """(tick, what the radio did)."""
+        return self._typed(Ether, topics.ETHER, start_s, end_s)
+
+    def observations(
+        self, robot: int, start_s: float = 0.0, end_s: float | None = None
+    ) -> Iterator[tuple[int, Observation]]:
+        """(tick, what a robot saw)."""
+        return self._typed(Observation, topics.obs(robot), start_s, end_s)
+
+    def inboxes(
+        self, robot: int, start_s: float = 0.0, end_s: float | None = None
+    ) -> Iterator[tuple[int, Inbox]]:
+        """(tick, what a robot heard)."""
+        return self._typed(Inbox, topics.rx(robot), start_s, end_s)
+
+    def actions(
+        self, robot: int, start_s: float = 0.0, end_s: float | None = None
+    ) -> Iterator[tuple[int, Action]]:
+        """(tick, what a robot did)."""
+        return self._typed(Action, topics.out(robot), start_s, end_s)
+
+    def _typed(
+        self, kind: type[M], key: str, start_s: float, end_s: float | None
+    ) -> Iterator[tuple[int, M]]:
+        for tick, _, data in self.messages(key, start_s=start_s, end_s=end_s):
+            yield tick, decode(kind, data)
+
+    def table(
+        self,
+        name: str,
+        robots: Iterable[int] | None = None,
+        start_s: float = 0.0,
+        end_s: float | None = None,
+    ) -> Table:
+        """One table of columns; robots only where the messages are a robot's own (tables.TABLES)."""
+        return self.tables(name, robots=robots, start_s=start_s, end_s=end_s)[name]
+
+    def tables(
+        self,
+        *names: str,
+        robots: Iterable[int] | None = None,
+        start_s: float = 0.0,
+        end_s: float | None = None,
+    ) -> dict[str, Table]:
+        """Several tables in one pass over the log. Raises InputError for a table that there is not."""
+        for name in names:
+            if name not in TABLES:
+                raise InputError(
+                    f"table {name}", "there is no such table", f"one of {', '.join(TABLES)}"
+                )
+        stems = sorted({TABLES[name][0] for name in names})
+        keys = [key for stem in stems for key in _keys(stem, robots)]
+        return build(names, self.messages(*keys, start_s=start_s, end_s=end_s), self.period_ns)
+
+
+def _keys(stem: str, robots: Iterable[int] | None) -> list[str]:
+    if robots is None or not stem.endswith("/"):
+        return [stem]
+    return [f"{stem}{robot}" for robot in sorted(robots)]
+
+
+def open_log(path: str | Path) -> Log:
+    """A log that `onehop run` wrote. Raises LogError when it is none, or of an unknown wire version."""
+    return Log(LogFile(Path(path)))

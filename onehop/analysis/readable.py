@@ -1,0 +1,80 @@
+"""Wire messages for people: payloads between robots opened, scans as numbers, names of the thesis."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import msgpack
+import numpy as np
+
+from onehop.contracts.errors import DecodeError
+from onehop.drive.codec import as_map
+from robot_agent.core.messages import Ack, Beacon, Command, Join, Message, Order, Phase, decode
+
+_ORDERS = {Order.NEXT: "Next", Order.LOST_FOLLOWER: "Lost_Follower", Order.NARROW: "Narrow"}
+
+
+def fields(data: bytes) -> Any:
+    """A wire message as maps and lists, scan and payloads included. Raises DecodeError."""
+    try:
+        return _opened(msgpack.unpackb(data))
+    except (ValueError, msgpack.UnpackException) as error:
+        raise DecodeError(f"not msgpack: {error}") from None
+
+
+def _opened(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _opened_field(key, inner) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [_opened(inner) for inner in value]
+    return value
+
+
+def _opened_field(key: str, value: Any) -> Any:
+    if key == "scan" and isinstance(value, bytes) and len(value) % 4 == 0:
+        return np.frombuffer(value, dtype="<f4").tolist()
+    if key == "payload" and isinstance(value, bytes):
+        message = opened(value)
+        return value.hex() if message is None else {"kind": kind_of(message), **_plain(message)}
+    return _opened(value)
+
+
+def opened(payload: bytes) -> Message | None:
+    """The team message in a payload, None if it is none."""
+    try:
+        return decode(payload)
+    except DecodeError:
+        return None
+
+
+def kind_of(message: Message | None) -> str:
+    """Name of a team message as the thesis has it: Setup, Next, Narrow, Lost_Follower, Ack, ..."""
+    if isinstance(message, Command):
+        if message.order is Order.NEXT and message.phase is Phase.SETUP:
+            return "Setup"
+        return _ORDERS[message.order]
+    return "garbled" if message is None else type(message).__name__
+
+
+def content_of(message: Message | None) -> str:
+    """What a team message says, in a few words."""
+    if isinstance(message, Command):
+        roster = message.roster
+        lost = f", lost {_ids(message.lost)}" if message.lost else ""
+        return f"epoch {roster.epoch}, leader {roster.leader} of {_ids(roster.members)}{lost}"
+    if isinstance(message, Ack):
+        return f"epoch {message.epoch}, {'in its slot' if message.in_position else 'on its way'}"
+    if isinstance(message, Beacon):
+        roster = message.roster
+        return f"epoch {roster.epoch}, leader {roster.leader} of {_ids(roster.members)}"
+    if isinstance(message, Join):
+        return f"asks to be taken in, epoch {message.epoch}"
+    return ""
+
+
+def _plain(message: Message) -> Mapping[str, Any]:
+    plain: Mapping[str, Any] = as_map(message)
+    return plain
+
+
+def _ids(robots: tuple[int, ...]) -> str:
+    return " ".join(map(str, robots))

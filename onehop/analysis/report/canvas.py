@@ -1,0 +1,73 @@
+"""The look that all figures of a report share, and how they are written: PNG and SVG, without pyplot."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from onehop.analysis.palette import BAD, FAINT, INK
+from onehop.analysis.report.material import Material
+
+DPI = 110
+"""Resolution of the PNG files: 10 inches are 1100 pixels."""
+
+_STYLE = {
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.edgecolor": FAINT,
+    "axes.labelcolor": INK,
+    "axes.grid": True,
+    "grid.color": "#E6E6E6",
+    "grid.linewidth": 0.6,
+    "axes.axisbelow": True,
+    "font.size": 9.0,
+    "xtick.color": INK,
+    "ytick.color": INK,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "onehop",
+}
+
+
+@contextmanager
+def styled() -> Iterator[None]:
+    """Figures made and written inside look alike; the caller's own settings come back after it."""
+    with mpl.rc_context(_STYLE):  # type: ignore[arg-type]
+        yield
+
+
+def save(figure: Figure, folder: Path, stem: str) -> Path:
+    """Write folder/stem.png and .svg; returns the PNG."""
+    FigureCanvasAgg(figure)
+    path = folder / f"{stem}.png"
+    figure.savefig(folder / f"{stem}.svg", metadata={"Date": None})
+    figure.savefig(path, dpi=DPI)
+    return path
+
+
+def mark_turns(axes: Axes, material: Material, named: bool = False) -> None:
+    """Lines where robots left and where the lead passed on, and red shade while a fault was in force."""
+    for span in material.faults:
+        axes.axvspan(span.start_s, span.end_s, color="#F3E3E3", linewidth=0, zorder=0)
+    for one in material.gone:
+        axes.axvline(one.at_s, color=BAD, linewidth=1.0, linestyle="--", zorder=1)
+        if named:
+            _name(axes, one.at_s, f"{one.robot} gone", BAD)
+    previous = None
+    for reign in material.reigns:
+        if previous not in (None, reign.leader):
+            axes.axvline(reign.at_s, color=INK, linewidth=0.8, linestyle=":", zorder=1)
+            if named:
+                _name(axes, reign.at_s, f"{reign.leader} leads", INK)
+        previous = reign.leader
+
+
+def _name(axes: Axes, at_s: float, text: str, colour: str) -> None:
+    left = colour == BAD
+    axes.annotate(
+        text, (at_s, 1.0), xycoords=("data", "axes fraction"), xytext=(-3 if left else 3, 2),
+        textcoords="offset points", ha="right" if left else "left", fontsize=8, color=colour,
+    )  # fmt: skip

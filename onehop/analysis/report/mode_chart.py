@@ -1,0 +1,171 @@
+"""The timeline: who led in which shape, what every robot was doing, which faults were in force."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgba
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from onehop.analysis.palette import BAD, FAINT, INK
+from onehop.analysis.report.material import Material
+from onehop.analysis.timeline import Span, spans
+from onehop.contracts.team import Mode
+
+SHORTEST_S = 1.0
+"""Modes that last less are drawn as part of the one before [s]: border following comes and goes."""
+
+_HEIGHT = 0.62
+_LETTER = 0.0085
+"""Width of a letter in a band, as a share of the axis; a name that does not fit is left out."""
+
+_LOOKS: dict[str, tuple[float, str, str]] = {
+    Mode.LEADING: (1.0, "", "leading"),
+    Mode.ALONE: (1.0, "xx", "alone"),
+    Mode.FOLLOWING: (0.32, "", "following"),
+    Mode.NARROW: (0.32, "....", "following in column"),
+    Mode.BORDER: (0.62, "", "around an obstacle"),
+    Mode.SETUP: (0.10, "", "setup"),
+    Mode.STOPPED: (0.10, "||", "stopped"),
+}
+"""Mode -> opacity of the robot's own colour, hatch, and name in the legend."""
+
+_ALARM = {Mode.LOST_LEADER: ("#F4A6A0", "lost leader"), Mode.JOINING: ("#F6D776", "asking to join")}
+"""Modes without a leader have a colour of their own."""
+
+
+def mode_chart(material: Material) -> Figure:
+    """The figure; one row a robot, above them leader, shape and faults."""
+    rows = len(material.robots)
+    lanes = _lanes(material.faults)
+    top = 2 + len(lanes)
+    height = 0.85 + 0.34 * (rows + top)
+    figure = Figure(figsize=(10.0, height))
+    axes = figure.add_axes((0.085, 0.45 / height, 0.895, 1.0 - 0.85 / height))
+    axes.set_xlim(0.0, max(material.end_s, material.period_s))
+    place = {robot: rows - 1 - number for number, robot in enumerate(material.robots)}
+    seen: set[str] = set()
+    for robot in material.robots:
+        _draw_modes(axes, material, robot, place[robot], seen)
+    _draw_reigns(axes, material, rows)
+    for lane, content in enumerate(lanes):
+        for span in content:
+            _draw_band(axes, span, rows + 2 + lane, "#F3D6D6", BAD)
+    for one in material.gone:
+        axes.plot(one.at_s, place[one.robot], marker="X", color=BAD, markersize=9, zorder=5)
+        axes.annotate(
+            one.why, (one.at_s, place[one.robot]), textcoords="offset points", xytext=(8, -3),
+            fontsize=8, color=BAD, zorder=6,
+        )  # fmt: skip
+    _label(axes, material, rows, top)
+    _explain_looks(figure, material, seen)
+    return figure
+
+
+def _lanes(faults: list[Span]) -> list[list[Span]]:
+    """Faults in as few rows as they need not to cover each other."""
+    lanes: list[list[Span]] = []
+    for span in faults:
+        for lane in lanes:
+            if lane[-1].end_s < span.start_s:
+                lane.append(span)
+                break
+        else:
+            lanes.append([span])
+    return lanes
+
+
+def _draw_modes(axes: Axes, material: Material, robot: int, row: int, seen: set[str]) -> None:
+    own = material.tables["status"].of(robot)
+    colour = material.colours[robot]
+    by_mode: dict[str, list[tuple[float, float]]] = {}
+    for span in spans(own["time_s"], own["mode"], 1.5 * material.period_s, SHORTEST_S):
+        length = span.end_s - span.start_s + material.period_s
+        by_mode.setdefault(span.what, []).append((span.start_s, length))
+    for mode, ranges in sorted(by_mode.items()):
+        seen.add(mode)
+        face, hatch = _look(mode, colour)
+        axes.broken_barh(
+            ranges, (row - _HEIGHT / 2, _HEIGHT), facecolor=face, edgecolor=colour if hatch else "none",
+            hatch=hatch, linewidth=0, zorder=3,
+        )  # fmt: skip
+
+
+def _look(mode: str, colour: str) -> tuple[tuple[float, float, float, float], str]:
+    if mode in _ALARM:
+        return to_rgba(_ALARM[Mode(mode)][0]), ""
+    opacity, hatch, _ = _LOOKS[mode]
+    return to_rgba(colour, opacity), hatch
+
+
+def _draw_reigns(axes: Axes, material: Material, rows: int) -> None:
+    reigns = material.reigns
+    ends = [*(reign.at_s for reign in reigns[1:]), material.end_s]
+    times = np.array([reign.at_s for reign in reigns])
+    for names, row in (
+        ([f"{reign.leader}" for reign in reigns], rows),
+        ([str(reign.shape) for reign in reigns], rows + 1),
+    ):
+        merged: list[Span] = []
+        for start_s, end_s, name in zip(times.tolist(), ends, names, strict=True):
+            if merged and merged[-1].what == name:
+                merged[-1] = Span(merged[-1].start_s, end_s, name)
+            else:
+                merged.append(Span(start_s, end_s, name))
+        for span in merged:
+            leading = row == rows
+            face = material.colours[int(span.what)] if leading else "#E9E6DF"
+            _draw_band(axes, span, row, face, "white" if leading else INK)
+
+
+def _draw_band(axes: Axes, span: Span, row: float, face: str, ink: str) -> None:
+    length = max(span.end_s - span.start_s, 0.2)
+    axes.broken_barh(
+        [(span.start_s, length)], (row - _HEIGHT / 2, _HEIGHT), facecolor=face, edgecolor="white",
+        linewidth=0.8, zorder=3,
+    )  # fmt: skip
+    if length < len(span.what) * _LETTER * axes.get_xlim()[1]:
+        return
+    axes.text(
+        span.start_s + length / 2, row, span.what, ha="center", va="center", fontsize=8, color=ink,
+        clip_on=True, zorder=4, fontweight="bold" if ink == "white" else "normal",
+    )  # fmt: skip
+
+
+def _label(axes: Axes, material: Material, rows: int, top: int) -> None:
+    names = [f"robot {robot}" for robot in reversed(material.robots)]
+    names += ["leader", "shape", *["faults"] * (top - 2)]
+    axes.set_yticks(range(rows + top), names)
+    for robot, text in zip(reversed(material.robots), axes.get_yticklabels(), strict=False):
+        text.set_color(material.colours[robot])
+        text.set_fontweight("bold")
+        if robot in material.dead:
+            row = rows - 1 - material.robots.index(robot)
+            axes.annotate(
+                "", (-0.070, row), (-0.006, row), xycoords=("axes fraction", "data"),
+                arrowprops={"arrowstyle": "-", "color": BAD, "linewidth": 1.6}, annotation_clip=False,
+            )  # fmt: skip
+    axes.axhline(rows - 0.5, color=FAINT, linewidth=0.8)
+    axes.set_ylim(-0.6, rows + top - 0.4)
+    axes.set_xlabel("time [s]")
+    axes.grid(axis="y", visible=False)
+    axes.tick_params(axis="y", length=0)
+
+
+def _explain_looks(figure: Figure, material: Material, seen: set[str]) -> None:
+    colour = "#777777"
+    handles = []
+    for mode, (_, _, name) in _LOOKS.items():
+        if mode in seen:
+            face, hatch = _look(mode, colour)
+            handles.append(
+                Patch(facecolor=face, edgecolor=colour, hatch=hatch, linewidth=0.4, label=name)
+            )
+    handles += [
+        Patch(facecolor=face, label=name) for mode, (face, name) in _ALARM.items() if mode in seen
+    ]
+    if material.gone:
+        handles.append(Patch(facecolor=BAD, label="gone"))
+    figure.legend(
+        handles=handles, loc="upper left", bbox_to_anchor=(0.08, 1.0), ncols=9,
+        frameon=False, fontsize=8, handlelength=1.6, columnspacing=1.2,
+    )  # fmt: skip

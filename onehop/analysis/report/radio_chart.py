@@ -1,0 +1,99 @@
+"""What became of the messages, and what the radio spent on routing."""
+
+from collections import Counter
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from onehop.analysis.palette import FAINT, INK, OKABE_ITO
+from onehop.analysis.report.material import Material
+from onehop.contracts.messages import Fate
+
+_FATES = {
+    Fate.BELOW_THRESHOLD: "#D55E00",
+    Fate.BIT_ERRORS: "#E69F00",
+    Fate.RETRY_LIMIT: "#CC79A7",
+    Fate.NO_ROUTE: "#56B4E9",
+    Fate.QUEUE_FULL: "#B8A800",
+    Fate.RECEIVER_GONE: "#5B5B5B",
+    Fate.SENDER_GONE: "#A5A5A5",
+}
+
+
+def radio_chart(material: Material) -> Figure:
+    """Two panels: losses by reason and receiver; bytes on the air over time by kind."""
+    figure = Figure(figsize=(10.0, 3.1))
+    left, right = figure.subplots(1, 2)
+    figure.subplots_adjust(left=0.07, right=0.98, top=0.86, bottom=0.15, wspace=0.22)
+    _draw_losses(left, material)
+    _draw_bytes(right, material)
+    return figure
+
+
+def losses(material: Material) -> dict[int, Counter[str]]:
+    """Lost messages by receiver and reason."""
+    found: dict[int, Counter[str]] = {robot: Counter() for robot in material.robots}
+    for frame in material.frames:
+        if not frame.delivered and frame.receiver in found:
+            found[frame.receiver][frame.fate] += 1
+    return found
+
+
+def _draw_losses(axes: Axes, material: Material) -> None:
+    found = losses(material)
+    names = [str(robot) for robot in material.robots]
+    base = np.zeros(len(names))
+    for fate, colour in _FATES.items():
+        counts = np.array([found[robot][fate] for robot in material.robots])
+        if counts.any():
+            axes.bar(names, counts, bottom=base, color=colour, width=0.6, label=fate.value)
+            base += counts
+    received = Counter(frame.receiver for frame in material.frames)
+    for place, robot in enumerate(material.robots):
+        total = received[robot]
+        axes.annotate(
+            f"{base[place]:.0f} of {total}", (place, base[place]), ha="center", xytext=(0, 2),
+            textcoords="offset points", fontsize=8, color=INK,
+        )  # fmt: skip
+    axes.set_ylim(0, max(1.0, 1.18 * base.max()))
+    axes.set_xlabel("receiver")
+    axes.set_ylabel("messages lost")
+    axes.grid(axis="x", visible=False)
+    if base.any():
+        axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=3, frameon=False, fontsize=8)
+    else:
+        axes.set_title("no message was lost", loc="left", fontsize=9)
+
+
+def _draw_bytes(axes: Axes, material: Material) -> None:
+    """Cumulative bytes: the team's own messages, and each kind of routing message."""
+    verdicts, control = material.tables["verdicts"], material.tables["control"]
+    first = _first_of_each(verdicts["source"], verdicts["message"])
+    order = np.sort(first)
+    times = np.append(verdicts["time_s"][order], material.end_s)
+    total = np.cumsum(verdicts["msdu_bytes"][order]) / 1e3
+    axes.step(times, np.append(total, total[-1:]), where="post", color=INK, label="team's messages")
+    for number, kind in enumerate(np.unique(control["kind"]).tolist()):
+        own = control.where(control["kind"] == kind)
+        axes.plot(
+            own["time_s"], own["bytes"] / 1e3, color=OKABE_ITO[number % len(OKABE_ITO)],
+            label=f"routing: {kind}",
+        )  # fmt: skip
+    routing = material.log.scenario.radio.routing
+    if not len(control):
+        axes.annotate(
+            f"routing {routing!r} sends nothing of its own", (0.5, 0.05), xycoords="axes fraction",
+            ha="center", fontsize=8, color=FAINT,
+        )  # fmt: skip
+    axes.set_xlim(0.0, max(material.end_s, material.period_s))
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlabel("time [s]")
+    axes.set_ylabel("offered since the start [kB]")
+    axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=3, frameon=False, fontsize=8)
+
+
+def _first_of_each(source: np.ndarray, message: np.ndarray) -> np.ndarray:
+    """Rows of the first verdict of each message; a broadcast has one verdict for each receiver."""
+    _, rows = np.unique(np.column_stack((source, message)), axis=0, return_index=True)
+    return np.asarray(rows)

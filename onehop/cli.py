@@ -1,0 +1,306 @@
+"""The command `onehop`. Exit status: 0 did it, 1 ran and the answer is no, 2 could not run, 130 Ctrl-C.
+
+Each command's module is imported when it is called, so that `onehop --help` answers at once.
+"""
+
+import sys
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+from typer import Argument, Option
+from typer._click.exceptions import ClickException, NoArgsIsHelpError
+
+from onehop.contracts.errors import OnehopError
+
+app = typer.Typer(
+    name="onehop",
+    help="Robot teams held together by radio: run, re-execute and explain missions.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode=None,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+class Driver(StrEnum):
+    PROCESSES = "processes"
+    INLINE = "inline"
+
+
+class Preset(StrEnum):
+    THESIS = "thesis"
+    PHYSICAL = "physical"
+
+
+class Planner(StrEnum):
+    ESCAPE = "escape"
+    MODIFIED = "modified"
+    ORIGINAL = "original"
+
+
+class Film(StrEnum):
+    GIF = "gif"
+    MP4 = "mp4"
+
+
+Settings = Annotated[
+    list[str],
+    Option("--set", metavar="KEY.PATH=VALUE", help="Change a key of the scenario (repeatable)."),
+]
+AsJson = Annotated[
+    bool, Option("--json", help="Print one JSON object on stdout and nothing else there.")
+]
+
+
+def _leave(status: int) -> NoReturn:
+    raise typer.Exit(status)
+
+
+@app.command()
+def run(
+    scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
+    driver: Annotated[Driver, Option(help="One process each, or all in one.")] = Driver.PROCESSES,
+    clock: Annotated[str | None, Option(help="lockstep: everyone waits for its inputs.")] = None,
+    seed: Annotated[int | None, Option(help="Seed of everything random.")] = None,
+    map_file: Annotated[
+        Path | None, Option("--map", help="Another map: .toml, ROS .yaml or MovingAI .map.")
+    ] = None,
+    start: Annotated[str | None, Option(metavar="X,Y", help="Where the team starts [m].")] = None,
+    goal: Annotated[str | None, Option(metavar="X,Y", help="Where the team goes [m].")] = None,
+    settings: Settings = [],  # noqa: B006 - typer needs a list
+    out: Annotated[Path | None, Option(help="Folder for log, summary and figure.")] = None,
+    record: Annotated[bool, Option("--record/--no-record", help="Write the log.")] = True,
+    as_json: AsJson = False,
+) -> None:
+    """Run a mission: every robot a process on the bus, recorded.
+
+    Example: onehop run scenarios/map1.toml --seed 7 --set team.size=4
+    """
+    from onehop.commands import run as command
+
+    if clock is not None:
+        settings = [*settings, f"clock.mode={clock}"]
+    _leave(
+        command.run(scenario, driver.value, settings, seed, map_file, start, goal, out, record, as_json)
+    )
+
+
+@app.command()
+def replay(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    robot: Annotated[int | None, Option(help="Only this robot.")] = None,
+    first_s: Annotated[float | None, Option("--from", help="Compare from this time on [s].")] = None,
+    last_s: Annotated[float | None, Option("--to", help="Stop at this time [s].")] = None,
+    settings: Settings = [],  # noqa: B006
+    as_json: AsJson = False,
+) -> None:
+    """Re-execute a log and compare every output with the recorded one.
+
+    With --robot and --set: where that robot would first have acted otherwise.
+
+    Example: onehop replay runs/demo/mission.mcap --robot 3
+    """
+    from onehop.commands import replay as command
+
+    _leave(command.replay(log, robot, first_s, last_s, settings, as_json))
+
+
+@app.command()
+def elect(
+    ids: Annotated[str, Argument(help="Robot ids, e.g. 1,2,4,5.")],
+    narrow: Annotated[bool, Option("--narrow", help="In a narrow passage.")] = False,
+    spacing: Annotated[float, Option(help="Distance between neighbours [m].")] = 4.0,
+    as_json: AsJson = False,
+) -> None:
+    """Leader, shape and slots of a team.
+
+    Example: onehop elect 1,2,4,5
+    """
+    from onehop.commands import elect as command
+
+    _leave(command.elect(ids, narrow, spacing, as_json))
+
+
+@app.command()
+def link(
+    distance: Annotated[
+        str, Option(metavar="A,B,C", help="Distances [m].")
+    ] = "1,5,8,10,12,15,20,25,30,40",
+    preset: Annotated[Preset, Option(help="Propagation.")] = Preset.THESIS,
+    rate: Annotated[float, Option(help="1, 2, 5.5 or 11 Mb/s.")] = 1.0,
+    msdu: Annotated[int, Option(help="Payload of a frame [B].")] = 800,
+    seed: Annotated[int, Option(help="Seed of fading and backoff.")] = 1,
+    seconds: Annotated[float, Option(help="Simulated time measured at each distance.")] = 20.0,
+    as_json: AsJson = False,
+) -> None:
+    """Link budget over distance: SNR, error rates, throughput.
+
+    Example: onehop link --distance 5,10,20 --preset thesis
+    """
+    from onehop.commands import link as command
+
+    _leave(command.link(distance, preset.value, rate, msdu, seed, seconds, as_json))
+
+
+@app.command()
+def saturate(
+    stations: Annotated[int, Option(help="Stations that always have a message.")] = 6,
+    rts: Annotated[bool, Option("--rts/--basic", help="With or without RTS/CTS.")] = True,
+    rate: Annotated[float, Option(help="1, 2, 5.5 or 11 Mb/s.")] = 1.0,
+    msdu: Annotated[int, Option(help="Payload of a frame [B].")] = 800,
+    seed: Annotated[int, Option(help="Seed of the backoff.")] = 1,
+    seconds: Annotated[float, Option(help="Simulated time.")] = 20.0,
+    as_json: AsJson = False,
+) -> None:
+    """Throughput of saturated stations in one cell, beside Bianchi's formula.
+
+    Example: onehop saturate --stations 10 --basic
+    """
+    from onehop.commands import link as command
+
+    _leave(command.saturate(stations, rts, rate, msdu, seed, seconds, as_json))
+
+
+@app.command()
+def plan(
+    map_file: Annotated[Path, Argument(metavar="MAP", help=".toml, ROS .yaml or MovingAI .map.")],
+    start: Annotated[str | None, Option(metavar="X,Y", help="Where it starts [m].")] = None,
+    goal: Annotated[str | None, Option(metavar="X,Y", help="Where it goes [m].")] = None,
+    planner: Annotated[Planner | None, Option(help="How it finds its way.")] = None,
+    seed: Annotated[int | None, Option(help="Seed of its samples.")] = None,
+    cell: Annotated[float | None, Option(help="Metres a cell of a MovingAI grid.")] = None,
+    settings: Settings = [],  # noqa: B006
+    figure: Annotated[Path | None, Option(help="Draw map, samples, road maps and path (.png).")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """One leader alone finds its way in a map that it does not know.
+
+    Example: onehop plan scenarios/map1.toml --planner escape --figure plan.png
+    """
+    from onehop.commands import plan as command
+
+    kind = None if planner is None else planner.value
+    _leave(command.plan(map_file, start, goal, kind, seed, cell, settings, figure, as_json))
+
+
+@app.command()
+def doctor(as_json: AsJson = False) -> None:
+    """Is everything here that a run needs? What is missing, and how to get it.
+
+    Example: onehop doctor
+    """
+    from onehop.commands import doctor as command
+
+    _leave(command.doctor(as_json))
+
+
+@app.command()
+def report(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    out: Annotated[
+        Path | None, Option(help="Folder for page and figures (default: beside the log).")
+    ] = None,
+    film: Annotated[Film | None, Option(help="Make a film of the mission, too.")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Show a mission on one self-contained page, with every figure as PNG and SVG.
+
+    Example: onehop report runs/demo/mission.mcap --film gif
+    """
+    from onehop.commands import report as command
+
+    _leave(command.report(log, out, film.value if film else None, as_json))
+
+
+@app.command()
+def explain(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    robot: Annotated[int, Option(help="Which robot.")],
+    at_s: Annotated[float, Option("--at", help="At which simulated time [s].")],
+    window_s: Annotated[
+        float, Option("--window", help="Tell messages of this long before it [s].")
+    ] = 6.0,
+    as_json: AsJson = False,
+) -> None:
+    """Why a robot did what it did: its mode, what it heard and missed, its k_rho, its error.
+
+    Example: onehop explain runs/demo/mission.mcap --robot 5 --at 63.5
+    """
+    from onehop.commands import explain as command
+
+    _leave(command.explain(log, robot, at_s, window_s, as_json))
+
+
+@app.command()
+def diff(
+    a: Annotated[Path, Argument(help="One log.")],
+    b: Annotated[Path, Argument(help="Another log.")],
+    as_json: AsJson = False,
+) -> None:
+    """The first difference of two logs: tick, topic, field, both values.
+
+    Example: onehop diff runs/a/mission.mcap runs/b/mission.mcap
+    """
+    from onehop.commands import diff as command
+
+    _leave(command.diff(a, b, as_json))
+
+
+@app.command()
+def salvage(
+    torn: Annotated[Path, Argument(help="A log whose recorder was killed, or that is damaged.")],
+    out: Annotated[Path, Option("-o", "--out", metavar="LOG", help="The sound log to write.")],
+    as_json: AsJson = False,
+) -> None:
+    """Make a sound log of a torn one, and say what was lost.
+
+    Example: onehop salvage runs/demo/mission.mcap -o saved.mcap
+    """
+    from onehop.commands import salvage as command
+
+    _leave(command.salvage(torn, out, as_json))
+
+
+@app.command()
+def view(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    out: Annotated[
+        Path | None, Option("-o", "--out", metavar="LOG", help="Write here, not into the log itself.")
+    ] = None,
+    open_viewer: Annotated[bool, Option("--open", help="Start Rerun on it, if installed.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Add what Foxglove and Rerun can show: poses, scans, map, links, events.
+
+    Example: onehop view runs/demo/mission.mcap --open
+    """
+    from onehop.commands import view as command
+
+    _leave(command.view(log, out, open_viewer, as_json))
+
+
+def main() -> NoReturn:
+    """Entry point: no traceback for what a person typed, one line instead."""
+    command = typer.main.get_command(app)
+    try:
+        status = command.main(standalone_mode=False)
+    except OnehopError as error:
+        print(f"onehop: {error}", file=sys.stderr)
+        status = 2
+    except typer.Abort:
+        status = 130
+    except KeyboardInterrupt:
+        print("onehop: interrupted", file=sys.stderr)
+        status = 130
+    except BrokenPipeError:
+        status = 1
+    except NoArgsIsHelpError as error:
+        print(error.format_message())
+        status = 2
+    except ClickException as error:
+        print(f"onehop: {error.format_message()}; see onehop --help", file=sys.stderr)
+        status = 2
+    sys.exit(status)

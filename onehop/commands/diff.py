@@ -1,0 +1,48 @@
+"""`onehop diff`: the first difference of two logs."""
+
+from pathlib import Path
+from typing import Any
+
+from onehop.analysis.difference import Comparison, compare
+from onehop.commands.opening import open_with_warning
+from onehop.commands.output import emit_json
+
+
+def diff(a: Path, b: Path, as_json: bool) -> int:
+    """Print what differs first; exit status 1 if anything does."""
+    left, right = open_with_warning(a), open_with_warning(b)
+    found = compare(left, right)
+    if as_json:
+        emit_json(_as_json(found))
+    else:
+        _print(found, left.period_ns / 1e9)
+    return 0 if found.same else 1
+
+
+def _as_json(found: Comparison) -> dict[str, Any]:
+    first = found.first
+    return {
+        "same": found.same,
+        "ticks": found.ticks,
+        "messages": found.messages,
+        "differing": found.differing,
+        "first": None
+        if first is None
+        else {
+            "tick": first.tick, "topic": first.channel, "field": first.field, "a": first.a, "b": first.b,
+        },
+        "scenario": [{"key": key, "a": one, "b": other} for key, one, other in found.scenario],
+    }  # fmt: skip
+
+
+def _print(found: Comparison, period: float) -> None:
+    for key, one, other in found.scenario:
+        print(f"scenario {key}: {one!r:.120} | {other!r:.120}")
+    first = found.first
+    if first is None:
+        print(f"no difference in {found.messages} messages of {found.ticks} ticks")
+        return
+    print(f"{found.differing} of {found.messages} messages differ in {found.ticks} common ticks")
+    where = f"{first.channel}, field {first.field}" if first.channel else first.field
+    print(f"first: tick {first.tick} ({first.tick * period:.2f} s), {where}")
+    print(f"  a: {first.a!r:.200}\n  b: {first.b!r:.200}")

@@ -1,0 +1,99 @@
+"""`onehop link` and `onehop saturate`: the radio model in tables, from the code that flies missions."""
+
+from dataclasses import asdict, replace
+
+from onehop.commands.output import emit_json, stdout, table
+from onehop.contracts.errors import InputError
+from onehop.contracts.scenario import RadioSection
+from radio_proxy.core.tables import link_table, saturation_table
+
+RATES = (1.0, 2.0, 5.5, 11.0)
+MOST_BYTES = 2304
+"""Largest MSDU of 802.11 [B]."""
+
+MOST_STATIONS = 200
+
+
+def link(
+    distances: str, preset: str, rate: float, msdu: int, seed: int, seconds: float, as_json: bool
+) -> int:
+    """Print the link budget over distance."""
+    _require_rate(rate)
+    _require_size(msdu)
+    physical = preset == "physical"
+    section = replace(RadioSection(), preset="physical" if physical else "thesis", rate_mbps=rate)
+    made = link_table(section, _distances(distances), msdu, seed, _positive_seconds(seconds))
+    if as_json:
+        emit_json(asdict(made))
+        return 0
+    rows = table(
+        f"Link at {rate:g} Mb/s, {msdu} B, preset {preset}",
+        "distance m", "SNR dB", "BER", "thesis BER", "frame success", "delivery", "Mb/s", "delay ms",
+    )  # fmt: skip
+    for row in made.rows:
+        rows.add_row(
+            f"{row.distance_m:g}",
+            f"{row.snr_db:.1f}",
+            f"{row.ber:.2e}",
+            f"{row.thesis_ber:.3f}",
+            f"{row.frame_success:.4f}",
+            f"{row.delivery_ratio:.4f}",
+            f"{row.throughput_bps / 1e6:.4f}",
+            "-" if row.delay_us is None else f"{row.delay_us / 1e3:.2f}",
+        )
+    stdout().print(rows)
+    print(f"ideal      {made.ideal_throughput_bps / 1e6:.4f} Mb/s (full exchange)")
+    print(f"eq 3.16    {made.eq_3_16_throughput_bps / 1e6:.4f} Mb/s (as printed in the thesis)")
+    print(f"threshold  {made.threshold_bps / 1e6:.4f} Mb/s")
+    return 0
+
+
+def saturate(
+    stations: int, rts: bool, rate: float, msdu: int, seed: int, seconds: float, as_json: bool
+) -> int:
+    """Print the throughput of saturated stations in one cell, measured and by Bianchi's formula."""
+    _require_rate(rate)
+    _require_size(msdu)
+    if not 1 <= stations <= MOST_STATIONS:
+        raise InputError(f"--stations {stations}", "out of range", f"1 to {MOST_STATIONS}")
+    section = replace(RadioSection(), rate_mbps=rate)
+    made = saturation_table(section, stations, msdu, rts, seed, _positive_seconds(seconds))
+    if as_json:
+        emit_json(asdict(made))
+        return 0
+    access = "RTS/CTS" if rts else "basic access"
+    shares = made.per_station_bps
+    print(f"{stations} saturated stations, {rate:g} Mb/s, {msdu} B, {access}, {seconds:g} s simulated")
+    print(f"throughput   {made.throughput_bps / 1e6:.4f} Mb/s")
+    print(f"normalized   {made.normalized:.4f}")
+    print(f"Bianchi      {made.bianchi_normalized:.4f}")
+    print(f"per station  {min(shares) / 1e6:.4f} to {max(shares) / 1e6:.4f} Mb/s")
+    return 0
+
+
+def _require_rate(rate: float) -> None:
+    if rate not in RATES:
+        raise InputError(f"--rate {rate:g}", "is no rate of 802.11b", "1, 2, 5.5 or 11")
+
+
+def _require_size(msdu: int) -> None:
+    if not 1 <= msdu <= MOST_BYTES:
+        raise InputError(f"--msdu {msdu}", "out of range", f"1 to {MOST_BYTES} bytes")
+
+
+def _positive_seconds(seconds: float) -> float:
+    if not seconds > 0:
+        raise InputError(f"--seconds {seconds:g}", "is not positive", "simulated time, e.g. 20")
+    return seconds
+
+
+def _distances(text: str) -> tuple[float, ...]:
+    try:
+        distances = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        raise InputError(
+            f"--distance {text!r}", "is no list of distances", "metres, e.g. 5,10,20"
+        ) from None
+    if not all(0 < distance < float("inf") for distance in distances):
+        raise InputError(f"--distance {text!r}", "a distance is not positive", "metres, e.g. 5,10,20")
+    return distances

@@ -1,0 +1,87 @@
+"""`onehop plan`: one leader alone finds its way through a map that it does not know."""
+
+from pathlib import Path
+from typing import Any
+
+from onehop import scenario_file
+from onehop.analysis.shortest import KnownMap, way_length
+from onehop.commands.output import emit_json
+from onehop.drive.solo import Solo, solo
+from world_server.core.mapfile import load_map
+from world_server.core.walls import FloatArray, WallMap
+
+RASTER_CELLS = 400
+"""Cells along the longer side of the map in which the shortest way is searched."""
+
+
+def plan(
+    map_file: Path,
+    start: str | None,
+    goal: str | None,
+    planner: str | None,
+    seed: int | None,
+    cell: float | None,
+    settings: list[str],
+    figure: Path | None,
+    as_json: bool,
+) -> int:
+    """Find the way once; exit status 1 when the goal was not reached."""
+    changes = [*settings]
+    if planner is not None:
+        changes.append(f"planner.kind={planner}")
+    if cell is not None:
+        changes.append(f"map.cell={cell}")
+    bundle = scenario_file.load_map_mission(
+        map_file,
+        scenario_file.point(start, "--start"),
+        scenario_file.point(goal, "--goal"),
+        changes,
+        seed,
+    )
+    scenario = bundle.scenario
+    walls = load_map(scenario.map, bundle.files)
+    with scenario_file.in_file(map_file):
+        run = solo(scenario, walls)
+    first = run.path[0]
+    target = (scenario.goal.x, scenario.goal.y)
+    shortest = _shortest(walls, scenario.planner.inflation, (first[0], first[1]), target)
+    summary: dict[str, Any] = {
+        **run.summary(),
+        "shortest_m": None if shortest is None else round(way_length(shortest), 3),
+    }
+    if figure is not None:
+        from onehop.analysis.plan_figure import plan_figure
+
+        figure.write_bytes(plan_figure(run, walls, target, shortest))
+    if as_json:
+        emit_json(summary)
+    else:
+        _print(summary, run, figure)
+    return 0 if summary["reached"] else 1
+
+
+def _shortest(
+    walls: WallMap, inflation: float, start: tuple[float, float], goal: tuple[float, float]
+) -> FloatArray | None:
+    """Taut way on the known map for the inflated robot, (n, 2) [m]."""
+    xmin, ymin, xmax, ymax = walls.bounds
+    known = KnownMap(walls, inflation, max(xmax - xmin, ymax - ymin) / RASTER_CELLS)
+    return known.shortest(start, known.distances(goal))
+
+
+def _print(summary: dict[str, Any], run: Solo, figure: Path | None) -> None:
+    print(f"answer         {run.progress.value}")
+    print(f"path           {summary['path_length_m']:.1f} m in {summary['steps']} ticks")
+    shortest = summary["shortest_m"]
+    if shortest:
+        ratio = summary["path_length_m"] / shortest
+        print(f"shortest       {shortest:.1f} m on the known map: {ratio:.2f} times as far")
+    else:
+        print("shortest       none: the known map has no way for the inflated robot")
+    print(f"planning       {summary['replans']} road maps, {summary['backtracks']} steps back")
+    print(f"plan time      p50 {summary['plan_ms_p50']:.2f} ms, p99 {summary['plan_ms_p99']:.2f} ms")
+    print(
+        f"clearance      {summary['min_clearance_m']:.2f} m at the least, {summary['contacts']} contacts"
+    )
+    if figure is not None:
+        print(f"figure         {figure}")

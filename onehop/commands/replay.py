@@ -1,0 +1,91 @@
+"""`onehop replay`: re-execute a log, compare every output, name the first that differs."""
+
+from pathlib import Path
+from typing import Any
+
+from onehop import scenario_file
+from onehop.commands.output import emit_json, say
+from onehop.contracts.errors import InputError
+from onehop.drive.log_reader import LogFile
+from onehop.drive.replay import Divergence, Report
+from onehop.drive.replay import replay as re_execute
+
+
+def replay(
+    path: Path,
+    robot: int | None,
+    first_s: float | None,
+    last_s: float | None,
+    settings: list[str],
+    as_json: bool,
+) -> int:
+    """Re-execute robots, radio and world of a log; returns the exit status."""
+    log = LogFile(path)
+    scenario = log.bundle.scenario
+    if robot is not None and robot not in scenario.team.robots:
+        raise InputError(
+            f"--robot {robot}",
+            "is not in the team",
+            f"one of {', '.join(map(str, scenario.team.robots))}",
+        )
+    if settings and robot is None:
+        raise InputError("--set", "asks what one robot would have done", "name it with --robot")
+    period = scenario.clock.period_ms / 1000.0
+    report = re_execute(
+        log,
+        robots=None if robot is None else (robot,),
+        parts=robot is None,
+        first_tick=0 if first_s is None else round(first_s / period),
+        last_tick=None if last_s is None else round(last_s / period),
+        scenario=scenario_file.changed(scenario, settings) if settings else None,
+    )
+    if log.torn:
+        say(f"{path}: the log is torn; replayed what is sound. onehop salvage makes a sound log of it")
+    if as_json:
+        emit_json(_as_json(report))
+    else:
+        _print(report, period, bool(settings))
+    return 0 if report.divergences == 0 else 1
+
+
+def _as_json(report: Report) -> dict[str, Any]:
+    first = report.first
+    return {
+        "ticks": report.ticks,
+        "robots": list(report.robots),
+        "compared": report.compared,
+        "divergences": report.divergences,
+        "first": None
+        if first is None
+        else {
+            "tick": first.tick,
+            "robot": first.robot,
+            "channel": first.channel,
+            "field": first.field,
+            "recorded": _plain(first.recorded),
+            "replayed": _plain(first.replayed),
+        },
+        "per_channel": report.per_channel,
+    }
+
+
+def _plain(value: Any) -> Any:
+    return value.hex() if isinstance(value, bytes) else value
+
+
+def _print(report: Report, period: float, what_if: bool) -> None:
+    names = ", ".join(map(str, report.robots))
+    print(f"{report.ticks} ticks, robots {names}: {report.compared} messages compared")
+    if report.first is None:
+        print("0 divergences: everything was said again, byte for byte")
+        return
+    print(f"{report.divergences} divergences{' under the changed setting' if what_if else ''}")
+    print(f"first: {_sentence(report.first, period)}")
+
+
+def _sentence(first: Divergence, period: float) -> str:
+    who = f"robot {first.robot}" if first.robot else first.channel
+    return (
+        f"tick {first.tick} ({first.tick * period:.2f} s), {who}, {first.channel}, field {first.field}: "
+        f"recorded {_plain(first.recorded)!r:.80}, replayed {_plain(first.replayed)!r:.80}"
+    )

@@ -1,0 +1,29 @@
+"""`onehop report`: a mission on one page, its figures, and a film if wanted."""
+
+from pathlib import Path
+
+from onehop.analysis.report.page import write_report
+from onehop.commands.opening import open_with_warning
+from onehop.commands.output import emit_json
+
+
+def report(path: Path, out: Path | None, film: str | None, as_json: bool) -> int:
+    """Write everything into a folder, by default `report` beside the log; returns the exit status."""
+    log = open_with_warning(path)
+    folder = out or path.parent / "report"
+    page = write_report(log, folder)
+    written = {"report": str(page), "figures": [str(p) for p in sorted(folder.glob("*.png"))]}
+    if film is not None:
+        from onehop.analysis.film import write_film
+
+        moving = folder / f"mission.{film}"
+        write_film(log, moving)
+        written["film"] = str(moving)
+    if as_json:
+        emit_json(written)
+    else:
+        print(f"report   {page}")
+        print(f"figures  {', '.join(Path(p).name for p in written['figures'])} (and .svg)")
+        if film is not None:
+            print(f"film     {written['film']}")
+    return 0

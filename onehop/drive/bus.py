@@ -1,0 +1,255 @@
+"""Zenoh as this project uses it: one router (the world), all others clients, everyone with an identity.
+
+The router refuses every put, subscription and query that `_RIGHTS` does not give to the sender's user
+name. Received messages land in one queue per session, as (key without prefix, bytes), in arrival order;
+nothing may depend on that order. Liveliness changes land in the same queue as (key, ALIVE or GONE).
+"""
+
+import json
+import queue
+import secrets
+import tempfile
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from types import TracebackType
+from typing import Any, Self
+
+import zenoh
+
+from onehop.contracts import topics
+from onehop.contracts.errors import MissionError
+
+ALIVE = b"alive"
+GONE = b"gone"
+
+CONNECT_TIMEOUT_MS = 60_000
+"""How long a client waits for the router to appear."""
+
+LEASE_MS = 3000
+"""Silence after which a stopped process counts as gone (Zenoh lease); a killed one is gone at once."""
+
+_PUT, _DELETE = "put", "delete"
+_SUBSCRIBE, _QUERY, _REPLY = "declare_subscriber", "query", "reply"
+_TOKEN = "liveliness_token"
+_WATCH, _ASK = "declare_liveliness_subscriber", "liveliness_query"
+
+
+@dataclass(frozen=True, slots=True)
+class Rights:
+    """What one identity may do: keys it may put, keys it may subscribe to."""
+
+    puts: tuple[str, ...]
+    hears: tuple[str, ...]
+
+
+def rights(name: str) -> Rights:
+    """The table: who may say and hear what."""
+    if name == topics.RADIO:
+        return Rights((topics.rx("*"), topics.record(topics.RADIO)), (topics.TRUTH, topics.END))
+    if name == topics.RECORDER:
+        return Rights((topics.RECORDED, topics.RESULT), (topics.record("*"), topics.END))
+    if name == topics.OPERATOR:
+        return Rights((topics.CONTROL,), (topics.PROGRESS, topics.RESULT, topics.RESTART, topics.END))
+    robot = name.removeprefix(topics.ROBOT_NAME.format(""))
+    return Rights(
+        (topics.out(robot),), (topics.obs(robot), topics.rx(robot), topics.fate(robot), topics.END)
+    )
+
+
+def make_credentials(names: Iterable[str]) -> dict[str, str]:
+    """A fresh password for every name of a mission."""
+    return {name: secrets.token_hex(16) for name in names}
+
+
+class Bus:
+    """One session on the bus of one mission. Use as a context manager: leaving without close hangs."""
+
+    def __init__(self, session: zenoh.Session, mission: str) -> None:
+        self._session = session
+        self._mission = mission
+        self._prefix = len(mission) + 1
+        self._kept: list[Any] = []
+        self.inbox: queue.SimpleQueue[tuple[str, bytes]] = queue.SimpleQueue()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._session.close()  # type: ignore[no-untyped-call]
+
+    def _key(self, key: str) -> str:
+        return f"{self._mission}/{key}"
+
+    def publisher(self, key: str, express: bool = True) -> Callable[[bytes], None]:
+        """A function that puts bytes on a key. express: send at once rather than batch."""
+        publisher = self._session.declare_publisher(
+            self._key(key),
+            congestion_control=zenoh.CongestionControl.BLOCK,
+            express=express,
+        )
+        self._kept.append(publisher)
+        return publisher.put
+
+    def subscribe(self, key: str) -> None:
+        """Let the messages of a key (or expression) arrive in the inbox."""
+        inbox, prefix = self.inbox, self._prefix
+
+        def arrived(sample: zenoh.Sample) -> None:
+            inbox.put((str(sample.key_expr)[prefix:], sample.payload.to_bytes()))
+
+        self._kept.append(self._session.declare_subscriber(self._key(key), arrived))
+
+    def watch(self, key: str) -> None:
+        """Let liveliness changes of a key (or expression) arrive in the inbox, present ones included."""
+        inbox, prefix = self.inbox, self._prefix
+
+        def changed(sample: zenoh.Sample) -> None:
+            state = ALIVE if sample.kind == zenoh.SampleKind.PUT else GONE
+            inbox.put((str(sample.key_expr)[prefix:], state))
+
+        self._kept.append(
+            self._session.liveliness().declare_subscriber(self._key(key), changed, history=True)
+        )
+
+    def announce(self, name: str) -> None:
+        """Declare this process alive. Do it last: whoever sees the token may send at once."""
+        self._kept.append(self._session.liveliness().declare_token(self._key(topics.alive(name))))
+
+    def answer(self, key: str, reply: Callable[[str], bytes | None]) -> None:
+        """Answer queries on an expression: reply(key) gives the bytes, or None for no answer."""
+        prefix = self._prefix
+
+        def asked(query: zenoh.Query) -> None:
+            with query:
+                name = str(query.key_expr)[prefix:]
+                data = reply(name)
+                if data is not None:
+                    query.reply(query.key_expr, data)
+
+        self._kept.append(self._session.declare_queryable(self._key(key), asked))
+
+    def ask(self, key: str, timeout_s: float) -> bytes | None:
+        """The first answer to a query on a key, None when none comes in time."""
+        for reply in self._session.get(self._key(key), timeout=timeout_s):
+            if reply.ok is not None:
+                return reply.ok.payload.to_bytes()
+        return None
+
+    def receive(self, timeout_s: float) -> tuple[str, bytes] | None:
+        """The next message or liveliness change; None if nothing comes in time."""
+        try:
+            return self.inbox.get(timeout=timeout_s)
+        except queue.Empty:
+            return None
+
+
+def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | None = None) -> Bus:
+    """The world's session. credentials: passwords by name; without them anyone may say anything."""
+    settings: dict[str, Any] = {
+        "mode": "router",
+        "listen/endpoints": [endpoint],
+        "scouting/delay": 0,
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "transport/shared_memory/enabled": False,
+    }
+    if credentials is None:
+        return Bus(_open(settings), mission)
+    with tempfile.NamedTemporaryFile("w", prefix="onehop-") as dictionary:  # readable by its owner only
+        dictionary.writelines(f"{name}:{word}\n" for name, word in credentials.items())
+        dictionary.flush()
+        settings["transport/auth/usrpwd"] = {
+            "user": topics.WORLD,
+            "password": secrets.token_hex(16),
+            "dictionary_file": dictionary.name,
+        }
+        settings["access_control"] = _access_control(mission, credentials)
+        return Bus(_open(settings), mission)
+
+
+def open_client(
+    mission: str,
+    endpoint: str,
+    name: str,
+    password: str | None,
+    timeout_ms: int = CONNECT_TIMEOUT_MS,
+) -> Bus:
+    """The session of everyone else. Raises MissionError if the router does not appear in time."""
+    settings: dict[str, Any] = {
+        "mode": "client",
+        "connect/endpoints": [endpoint],
+        "connect/timeout_ms": timeout_ms,
+        "connect/exit_on_failure": True,
+        "connect/retry": {"period_init_ms": 20, "period_max_ms": 200, "period_increase_factor": 1.5},
+        "listen/endpoints": [],
+        "scouting/multicast/enabled": False,
+        "scouting/gossip/enabled": False,
+        "transport/shared_memory/enabled": False,
+        "transport/link/tx/lease": LEASE_MS,
+    }
+    if password is not None:
+        settings["transport/auth/usrpwd"] = {"user": name, "password": password}
+    return Bus(_open(settings), mission)
+
+
+def _open(settings: Mapping[str, Any]) -> zenoh.Session:
+    config = zenoh.Config()
+    for key, value in settings.items():
+        config.insert_json5(key, json.dumps(value))
+    try:
+        return zenoh.open(config)
+    except zenoh.ZError as error:
+        endpoint = settings["listen/endpoints"] or settings["connect/endpoints"]
+        raise MissionError(f"no bus at {endpoint[0]}: {str(error).splitlines()[0]}") from None
+
+
+def _access_control(mission: str, names: Iterable[str]) -> dict[str, Any]:
+    """The table of `rights`, as Zenoh's configuration (ingress and egress as the router sees them)."""
+    rules: list[dict[str, Any]] = []
+    subjects: list[dict[str, Any]] = []
+    policies: list[dict[str, Any]] = []
+
+    def rule(name: str, flow: str, messages: list[str], keys: Iterable[str]) -> str:
+        identity = f"{name} {flow} {len(rules)}"
+        rules.append(
+            {
+                "id": identity,
+                "permission": "allow",
+                "flows": [flow],
+                "messages": messages,
+                "key_exprs": [f"{mission}/{key}" for key in keys],
+            }
+        )
+        return identity
+
+    for name in names:
+        may = rights(name)
+        granted = [
+            rule(name, "ingress", [_PUT, _DELETE], may.puts),
+            rule(name, "ingress", [_SUBSCRIBE], may.hears),
+            rule(name, "egress", [_PUT, _DELETE], may.hears),
+            rule(name, "egress", [_SUBSCRIBE], _subscribed_by_others(may.puts)),
+            rule(name, "ingress", [_QUERY], [topics.config(name)]),
+            rule(name, "egress", [_REPLY], [topics.config(name)]),
+            rule(name, "egress", ["declare_queryable"], [topics.config("*")]),
+            rule(name, "ingress", [_TOKEN], [topics.alive(name)]),
+            rule(name, "ingress", [_WATCH, _ASK], [topics.alive("*"), topics.alive(topics.WORLD)]),
+            rule(name, "egress", [_TOKEN], [topics.alive("*")]),
+        ]
+        subjects.append({"id": name, "usernames": [name]})
+        policies.append({"id": name, "rules": granted, "subjects": [name]})
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": rules,
+        "subjects": subjects,
+        "policies": policies,
+    }
+
+
+def _subscribed_by_others(keys: Iterable[str]) -> list[str]:
+    """The expressions under which the puts of these keys are subscribed to (they must match exactly)."""
+    stems = [key.partition("/") for key in keys]
+    return [f"{stem}/*" if slash else stem for stem, slash, _ in stems]

@@ -1,0 +1,112 @@
+"""The recorder process: everything on the bus into one MCAP file, as it happens.
+
+World and radio hand it one batch per tick. It writes complete ticks in canonical order, flushes them to
+the operating system and tells the world how far the file is; the world never runs more than a few ticks
+ahead. With --no-file it only makes the digest.
+"""
+
+import json
+import time
+from pathlib import Path
+from typing import Any
+
+from onehop.contracts import topics
+from onehop.contracts.messages import End
+from onehop.drive import node
+from onehop.drive.briefings import LogBriefing
+from onehop.drive.bus import GONE, Bus
+from onehop.drive.codec import decode
+from onehop.drive.journal import Journal, WireMessage
+from onehop.drive.log_writer import LogWriter
+from onehop.drive.record import unpack_record
+from onehop.mission.summary import summarize
+from onehop.scenario_file import bundle_from_json
+
+FLUSH_TICKS = 2
+"""Ticks between two flushes; what a kill -9 can take is less than that and what is in flight."""
+
+LAST_WORDS_S = 2.0
+"""How long to wait for the last records after the end of the mission was announced."""
+
+
+def main() -> int:
+    parser = node.arguments("onehop.recorder", "Writes the log of a mission.")
+    node.add_connect(parser)
+    parser.add_argument(
+        "--out", type=Path, required=True, help="folder for mission.mcap and summary.json"
+    )
+    parser.add_argument("--no-file", action="store_true", help="make the digest, write no log")
+    options = parser.parse_args()
+    node.start(options)
+    with node.connect(options, topics.RECORDER) as bus:
+        bus.subscribe(topics.record("*"))
+        bus.subscribe(topics.END)
+        bus.watch(topics.alive(topics.WORLD))
+        briefing = decode(LogBriefing, node.briefing(bus, topics.RECORDER))
+        options.out.mkdir(parents=True, exist_ok=True)
+        return _Recorder(bus, briefing, options.out, not options.no_file).serve()
+
+
+class _Recorder:
+    def __init__(self, bus: Bus, briefing: LogBriefing, out: Path, with_file: bool) -> None:
+        self._bus = bus
+        self._out = out
+        self._path = out / "mission.mcap" if with_file else None
+        self._log: LogWriter | None = None
+        if self._path is not None:
+            bundle = bundle_from_json(briefing.scenario_json, dict(briefing.files), "briefing")
+            self._log = LogWriter(self._path, bundle, briefing.driver)
+        self._journal = Journal(self._write)
+        self._acknowledge = bus.publisher(topics.RECORDED)
+        self._end: End | None = None
+
+    def _write(self, tick: int, messages: list[WireMessage]) -> None:
+        if self._log is not None:
+            self._log.write(tick, messages)
+        if (tick + 1) % FLUSH_TICKS == 0:
+            if self._log is not None:
+                self._log.flush()
+            self._acknowledge(tick.to_bytes(8, "little"))
+
+    def serve(self) -> int:
+        """Record until the end of the mission, or of the world."""
+        self._bus.announce(topics.RECORDER)
+        while self._end is None:
+            key, data = self._bus.inbox.get()
+            if data is GONE:
+                break
+            self._take(key, data)
+        deadline = time.monotonic() + LAST_WORDS_S
+        while self._end is not None and self._journal.complete < self._end.last_tick:
+            received = self._bus.receive(max(0.0, deadline - time.monotonic()))
+            if received is None:
+                break
+            self._take(*received)
+        return self._finish()
+
+    def _take(self, key: str, data: bytes) -> None:
+        if key == topics.END:
+            self._end = decode(End, data)
+        elif key.startswith(topics.record("")):
+            self._journal.add(*unpack_record(data))
+
+    def _finish(self) -> int:
+        if self._log is not None:
+            for tick, messages in self._journal.rest():
+                self._log.write(tick, messages)
+        summary: dict[str, Any] | None = None
+        if self._end is not None:
+            log = str(self._path) if self._path is not None else None
+            summary = summarize(self._end.outcome, self._end.wall_s, self._journal.digest(), log)
+        if self._log is not None:
+            self._log.close(summary)
+        if summary is None:
+            return 1
+        text = json.dumps(summary, indent=1)
+        (self._out / "summary.json").write_text(text + "\n")
+        self._bus.publisher(topics.RESULT)(text.encode())
+        return 0
+
+
+if __name__ == "__main__":
+    node.main(main)

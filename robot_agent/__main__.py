@@ -1,0 +1,4 @@
+from onehop.drive import node
+from robot_agent.process import main
+
+node.main(main)

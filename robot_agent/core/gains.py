@@ -1,0 +1,78 @@
+"""How k_rho follows the throughput of the link to the leader (thesis 3.5). Replaceable policies.
+
+A policy hears one throughput for each Next that came, and 0 for each that did not.
+"""
+
+from typing import Protocol
+
+from onehop.contracts.scenario import GainsSection
+
+FILTER_SHARE = 0.5
+"""Weight of the newest measurement in the smooth policy's filter: two Next periods of memory."""
+
+LOOKAHEAD = 1.0
+"""Next periods over which the smooth policy extrapolates a falling throughput."""
+
+BAND = 1.5
+"""The smooth policy begins to hurry below this multiple of the threshold."""
+
+
+class GainPolicy(Protocol):
+    """Chooses k_rho [1/s] from measured throughputs [bit/s]."""
+
+    def heard(self, throughput_bps: float) -> float:
+        """k_rho after one more Next, or after one that is missing (0 bit/s)."""
+        ...
+
+
+class ConstantGain:
+    """Always k_rho_min: the thesis's comparison."""
+
+    def __init__(self, gains: GainsSection) -> None:
+        self._k_rho = gains.k_rho_min
+
+    def heard(self, throughput_bps: float) -> float:  # noqa: ARG002 (the interface's argument)
+        return self._k_rho
+
+
+class ThroughputGain:
+    """k_rho_max while the last throughput is below the threshold, else k_rho_min (thesis 3.5)."""
+
+    def __init__(self, gains: GainsSection, threshold_bps: float) -> None:
+        self._gains = gains
+        self._threshold = threshold_bps
+
+    def heard(self, throughput_bps: float) -> float:
+        low = throughput_bps < self._threshold
+        return self._gains.k_rho_max if low else self._gains.k_rho_min
+
+
+class SmoothGain:
+    """k_rho in proportion to the deficit of a filtered throughput, extrapolated while it falls.
+
+    Differs: two-valued in the thesis. One fade then makes the robot jump at full gain for a whole
+    period, and the gain rises only after the link is already bad. Here a single fade is halved by the
+    filter, and a steady fall is seen before the threshold.
+    """
+
+    def __init__(self, gains: GainsSection, threshold_bps: float) -> None:
+        self._gains = gains
+        self._threshold = threshold_bps
+        self._filtered = -1.0
+
+    def heard(self, throughput_bps: float) -> float:
+        before = self._filtered if self._filtered >= 0 else throughput_bps
+        self._filtered = before + FILTER_SHARE * (throughput_bps - before)
+        expected = self._filtered + LOOKAHEAD * min(0.0, self._filtered - before)
+        calm = BAND * self._threshold
+        urgency = min(1.0, max(0.0, (calm - expected) / (calm - self._threshold)))
+        return self._gains.k_rho_min + urgency * (self._gains.k_rho_max - self._gains.k_rho_min)
+
+
+def make_policy(gains: GainsSection, threshold_bps: float) -> GainPolicy:
+    """The policy that a scenario names."""
+    if gains.policy == "constant":
+        return ConstantGain(gains)
+    if gains.policy == "smooth":
+        return SmoothGain(gains, threshold_bps)
+    return ThroughputGain(gains, threshold_bps)

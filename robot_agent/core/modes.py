@@ -1,0 +1,108 @@
+"""The part that a robot plays in its team, as one table of transitions (thesis 3.3, 4.3; team.md).
+
+Theory of operation. A robot is always in exactly one mode. What happens to it is told as an event, and
+the table below says which mode follows; an event that the table does not give for a mode is a bug of
+ours and raises. The thesis's modes are here under their names: Setup, Next (`leading`, `following`),
+Narrow, Lost_Leader. Its Lost_Follower is no mode but a command: the receiver goes on in the mode that
+the new roster gives it.
+
+A first incarnation starts in `setup`; a restarted one in `joining`, because it has no roster and must
+not act on an old one. Three families of modes follow:
+- acting as leader: `leading`, or `alone` when it is the only member;
+- following: `following`, `narrow` in the column, `border following` while an obstacle lies between the
+  robot and its slot (it interrupts Algorithm 1 and resumes it, thesis 3.3.4);
+- without a leader: `lost leader` while the elected one is not heard, `joining` while it asks to be
+  taken in.
+`stopped` is where a mission ends: the leader at its goal, a follower in its last slot, or a robot of
+profile `thesis` that hears nobody and is told to stop.
+"""
+
+from enum import StrEnum
+
+from onehop.contracts.team import Mode
+
+
+class Event(StrEnum):
+    """What can happen to a robot's part in the team."""
+
+    FORMED = "formed"  # the leader's setup is over
+    TOLD_SETUP = "told setup"  # obeys a command of a team that still gathers
+    TOLD_NEXT = "told next"  # obeys a command to drive in the open
+    TOLD_NARROW = "told narrow"  # obeys a command to drive in column
+    OBSTRUCTED = "obstructed"  # an obstacle lies between it and its slot
+    CLEARED = "cleared"  # back in the clear, in the open
+    CLEARED_NARROW = "cleared in column"  # back in the clear, in column
+    LEADER_SILENT = "leader silent"  # its leader was given up, another one is elected
+    ELECTED = "elected"  # leads the roster in force
+    LEFT_ALONE = "left alone"  # is the only member of the roster in force
+    GAVE_WAY = "gave way"  # handed the team over to another leader
+    DISMISSED = "dismissed"  # its leader's roster lacks it
+    ARRIVED = "arrived"  # at the goal, or in the last slot, or at the end of all ways
+    FORSAKEN = "forsaken"  # hears nobody, and stops (profile thesis, orphan = stop)
+
+
+START, RESTART = Mode.SETUP, Mode.JOINING
+"""Mode of a first incarnation, and of any later one."""
+
+_ANY = {
+    Event.TOLD_SETUP: Mode.SETUP,
+    Event.TOLD_NEXT: Mode.FOLLOWING,
+    Event.TOLD_NARROW: Mode.NARROW,
+    Event.ELECTED: Mode.LEADING,
+    Event.LEFT_ALONE: Mode.ALONE,
+    Event.GAVE_WAY: Mode.FOLLOWING,
+}
+_LED = {
+    **_ANY,
+    Event.LEADER_SILENT: Mode.LOST_LEADER,
+    Event.DISMISSED: Mode.JOINING,
+    Event.FORSAKEN: Mode.STOPPED,
+}
+_ON_THE_WAY = {**_LED, Event.OBSTRUCTED: Mode.BORDER, Event.ARRIVED: Mode.STOPPED}
+
+TABLE: dict[Mode, dict[Event, Mode]] = {
+    Mode.SETUP: {**_LED, Event.FORMED: Mode.LEADING, Event.ARRIVED: Mode.STOPPED},
+    Mode.LEADING: {**_ANY, Event.ARRIVED: Mode.STOPPED},
+    Mode.ALONE: {**_ANY, Event.ARRIVED: Mode.STOPPED},
+    Mode.FOLLOWING: _ON_THE_WAY,
+    Mode.NARROW: _ON_THE_WAY,
+    Mode.BORDER: {
+        **_ON_THE_WAY,
+        Event.TOLD_NEXT: Mode.BORDER,
+        Event.TOLD_NARROW: Mode.BORDER,
+        Event.OBSTRUCTED: Mode.BORDER,
+        Event.CLEARED: Mode.FOLLOWING,
+        Event.CLEARED_NARROW: Mode.NARROW,
+    },
+    Mode.LOST_LEADER: _LED,
+    Mode.JOINING: _LED,
+    Mode.STOPPED: {**_LED, Event.ARRIVED: Mode.STOPPED},
+}
+"""mode -> event -> next mode: the whole state machine."""
+
+
+def next_mode(mode: Mode, event: Event) -> Mode:
+    """The mode that follows; LookupError when the table has no such transition (a bug of ours)."""
+    try:
+        return TABLE[mode][event]
+    except KeyError:
+        raise LookupError(f"no transition from {mode.value} on {event.value}") from None
+
+
+def diagram() -> str:
+    """The table as a Mermaid state diagram, one edge for each pair of modes."""
+
+    def name(mode: Mode) -> str:
+        return mode.value.replace(" ", "_")
+
+    lines = ["stateDiagram-v2", f"    [*] --> {name(START)}", f"    [*] --> {name(RESTART)}: restarted"]
+    for mode, row in TABLE.items():
+        edges: dict[Mode, list[str]] = {}
+        for event, target in row.items():
+            if target is not mode:
+                edges.setdefault(target, []).append(event.value)
+        lines += [
+            f"    {name(mode)} --> {name(target)}: {', '.join(events)}"
+            for target, events in edges.items()
+        ]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,90 @@
+"""The boundary of an inflated obstacle, traced by rolling a disc over the points that the laser hit.
+
+The disc's radius is the clearance. It pivots about the point that it touches until it touches the next
+one; its centre then draws exactly the boundary that a point robot would follow among obstacles grown by
+that radius. A gap between points is a way through only if the disc fits, so nothing is decided by rule.
+"""
+
+import math
+
+import numpy as np
+
+from robot_agent.core.planning.view import View
+from robot_agent.core.scan import FloatArray
+
+ARC_STEP = 0.35
+"""Turn between two traced points of one arc [rad]."""
+
+ROUNDING = 0.02
+"""A point that the disc already overlaps by this turn is met at once [rad]."""
+
+MOST_PIVOTS = 400
+"""Bound of one trace; the laser's reach ends it long before."""
+
+
+def trace(view: View, start: FloatArray, radius: float, side: int) -> FloatArray:
+    """Centres of the rolling disc from `start` on, as far as they are known to be free, (n, 2) [m].
+
+    side: +1 has the obstacle on the left, -1 on the right. Empty if nothing is near enough to touch.
+    """
+    points = view.obstacles
+    if not len(points):
+        return np.empty((0, 2))
+    centre, contact = settle(points, start, radius)
+    if math.dist(centre, start) > radius:
+        return np.empty((0, 2))
+    traced = [centre]
+    angle = math.atan2(*(centre - points[contact])[::-1])
+    before = contact
+    for _ in range(MOST_PIVOTS):
+        turn, following = _pivot(points, contact, before, angle, radius, side)
+        steps = max(1, math.ceil(turn / ARC_STEP))
+        arc = angle + side * turn * np.arange(1, steps + 1) / steps
+        traced += list(points[contact] + radius * np.column_stack((np.cos(arc), np.sin(arc))))
+        if following == contact or math.dist(traced[-1], view.origin) > view.fan.range:
+            break
+        angle = math.atan2(*(traced[-1] - points[following])[::-1])
+        before, contact = contact, following
+    return _known(view, np.array(traced), radius)
+
+
+def settle(points: FloatArray, start: FloatArray, radius: float) -> tuple[FloatArray, int]:
+    """The place nearest to `start` where a disc touches a point and overlaps none, and that point."""
+    centre, contact = start.copy(), 0
+    for _ in range(8):
+        offset = centre - points
+        distance = np.hypot(offset[:, 0], offset[:, 1])
+        contact = int(np.argmin(distance))
+        if abs(distance[contact] - radius) < 1e-6:
+            break
+        away = offset[contact] / max(float(distance[contact]), 1e-9)
+        centre = points[contact] + radius * away
+    return centre, contact
+
+
+def _pivot(
+    points: FloatArray, contact: int, before: int, angle: float, radius: float, side: int
+) -> tuple[float, int]:
+    """How far the disc turns about its contact until it meets another point, and which [rad].
+
+    before: the contact that it comes from. With no other point in reach it goes once around the contact.
+    """
+    offset = points - points[contact]
+    distance = np.hypot(offset[:, 0], offset[:, 1])
+    near = np.flatnonzero((distance < 2.0 * radius) & (distance > 1e-6))
+    if not len(near):
+        return 2.0 * math.pi, contact
+    bearing = np.arctan2(offset[near, 1], offset[near, 0])
+    meets = bearing - side * np.arccos(distance[near] / (2.0 * radius))
+    turn = (side * (meets - angle)) % (2.0 * math.pi)
+    turn[(turn > 2.0 * math.pi - ROUNDING) & (near != before)] = 0.0
+    best = int(np.lexsort((-distance[near], turn))[0])
+    return float(turn[best]), int(near[best])
+
+
+def _known(view: View, traced: FloatArray, radius: float) -> FloatArray:
+    """The traced places up to the first that is neither in view nor, out of view, right beside the robot."""
+    bearing, distance = view.polar(traced)
+    beside = (distance < 2.0 * radius) & (np.abs(bearing) > view.fan.angles[-1])
+    unknown = np.flatnonzero(~(view.visible(traced) | beside))
+    return traced[: unknown[0]] if len(unknown) else traced

@@ -1,0 +1,242 @@
+"""The default way-finding: leaves every trap that a point robot can leave; current scan, bounded memory.
+
+At every planning moment the robot draws a local road map in what it sees. It prefers to search by
+openings (openings.py), which finds short ways. That search may spend a bounded distance without coming
+closer to the goal than ever before; then DistBug (distbug.py) takes over from the place closest to the
+goal, until the record is broken. Completeness rests on DistBug alone, whose proof holds from any start:
+every record is better than the last by a fixed step, so there are finitely many of them, and between two
+lie a bounded search and a boundary loop that ends with a better place or with "no way".
+"""
+
+import math
+from enum import Enum
+
+import numpy as np
+
+from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
+from onehop.contracts.messages import Note, Ranges
+from onehop.contracts.scenario import Briefing
+from robot_agent.core.planning.distbug import DistBug
+from robot_agent.core.planning.driving import Driver
+from robot_agent.core.planning.guidance import Guidance, Progress
+from robot_agent.core.planning.openings import NOTHING, Openings, edge_samples
+from robot_agent.core.planning.passage import passage_width
+from robot_agent.core.planning.roadmap import RoadMap, sample_fan
+from robot_agent.core.planning.survey import Survey
+from robot_agent.core.planning.view import NO_POINTS, Afterimage, View
+from robot_agent.core.scan import Fan, FloatArray
+
+GOAL = -2
+"""Stands for the goal where the number of a way point could stand."""
+
+Reach = dict[int, tuple[int, float]]
+"""Way point (or GOAL) -> point of the road map, and its cost [m]."""
+
+
+class Phase(Enum):
+    """How the way is being sought."""
+
+    SEARCH = "search by openings"
+    RETURN = "return to the closest place"
+    CIRCLE = "DistBug"
+
+
+class Escape:
+    """A pathfinder: see the module. One instance serves one leadership."""
+
+    def __init__(self, briefing: Briefing, pose: Pose, rng: np.random.Generator) -> None:
+        self.body, self.section, self.rng = briefing.body, briefing.planner, rng
+        self.goal: FloatArray = np.array((briefing.goal.x, briefing.goal.y))
+        self.tolerance = briefing.goal.tolerance
+        self.fan = Fan(briefing.body)
+        self.inflation = self.section.inflation
+        self.clearance, self.comfort = 1.04 * self.inflation, 1.4 * self.inflation
+        self.driver = Driver(self.body, self.fan, briefing.period_ns * 1e-9, 1.01 * self.inflation)
+        self.openings = Openings(self.section.memory, self.goal, self.inflation)
+        self.afterimage = Afterimage(6.0 * self.inflation)
+        self.phase = Phase.SEARCH
+        self.distbug = DistBug(self.goal, self.clearance)
+        self.budget = self.section.patience * self.body.laser_range
+        self.spent = 0.0
+        self.target, self.tries = NOTHING, 0
+        self.turn: float | None = None
+        self.planned: Pose | None = None
+        self.remaining = self.record = math.dist((pose.x, pose.y), self.goal)
+        self.mark = self.record
+        self.passage = math.inf
+        self.waypoint = (pose.x, pose.y)
+        self.notes: list[Note] = []
+        self.progress = Progress.DRIVING
+        self.survey: Survey | None = None
+
+    def step(self, pose: Pose, scan: Ranges, moving: frozenset[int]) -> Guidance:
+        """See Pathfinder."""
+        if math.dist((pose.x, pose.y), self.goal) <= 0.6 * self.tolerance:
+            self.progress = Progress.ARRIVED
+        if self.progress is Progress.DRIVING and self._due(pose):
+            self._plan(pose, scan, moving)
+        twist = self._twist(pose, scan) if self.progress is Progress.DRIVING else STANDSTILL
+        notes, self.notes = tuple(self.notes), []
+        return Guidance(twist, self.progress, self.remaining, self.passage, self.waypoint, notes)
+
+    def _due(self, pose: Pose) -> bool:
+        """Is it time to look and plan anew: a piece driven or turned, the way at its end, or blocked."""
+        last = self.planned
+        if last is None or self.driver.shielded > 3:
+            return True
+        if self.turn is not None and abs(wrap_angle(self.turn - pose.heading)) < 0.1:
+            return True
+        moved = math.dist((pose.x, pose.y), (last.x, last.y))
+        turned = abs(wrap_angle(pose.heading - last.heading))
+        if moved >= 3.0 * self.inflation or turned > math.pi / 4:
+            return True
+        return self.turn is None and math.dist((pose.x, pose.y), self.driver.way[-1]) < 0.1
+
+    def _twist(self, pose: Pose, scan: Ranges) -> Twist:
+        if self.turn is not None:
+            return self.driver.turn_to(pose, self.turn)
+        return self.driver.drive(pose, scan)
+
+    def _plan(self, pose: Pose, scan: Ranges, moving: frozenset[int]) -> None:
+        """One planning moment: look, remember, choose."""
+        self._account(pose)
+        beside = self.afterimage.beside(pose, float(self.fan.angles[-1]))
+        view = View(self.fan, pose, scan, moving, 0.1 * self.inflation, beside)
+        self.afterimage.keep(view)
+        draws = self.rng.random((self.section.samples, 2))
+        samples = sample_fan(view, draws, pose.heading, math.pi, self.clearance)
+        samples = np.concatenate((samples, edge_samples(view, 1.1 * self.clearance)))
+        known = self.openings.in_view(view)
+        extras = np.concatenate((self.goal[None], self.openings.memory.xy[known]))
+        roadmap = RoadMap(view, samples, extras, self.clearance, self.comfort)
+        costs = roadmap.costs()
+        reach = _reach(roadmap, costs, known)
+        lengths = {n: cost for n, (_, cost) in reach.items() if n != GOAL}
+        self.openings.note_place(pose, lengths, self.body.laser_range)
+        self.openings.note(view, roadmap, costs, known, self.record)
+        self.passage = passage_width(view, 8.0 * self.inflation)
+        backtrack = self._choose(view, roadmap, costs, reach)
+        way = np.array(self.driver.way) if self.turn is None else NO_POINTS
+        self.survey = Survey(pose, samples, roadmap.points, roadmap.edges, way, backtrack)
+
+    def _account(self, pose: Pose) -> None:
+        """Keep the record; a new one gives the search its whole budget back."""
+        if self.planned is not None:
+            self.spent += math.dist((pose.x, pose.y), (self.planned.x, self.planned.y))
+        self.planned = pose
+        self.driver.shielded = 0
+        self.record = min(self.record, math.dist((pose.x, pose.y), self.goal))
+        if self.record < self.mark - self.inflation:
+            self.mark, self.spent = self.record, 0.0
+            self._enter(Phase.SEARCH)
+
+    def _enter(self, phase: Phase) -> None:
+        if phase is not self.phase:
+            self.phase = phase
+            self.notes.append(Note("phase", {"phase": phase.value, "record": self.record}))
+            self.distbug = DistBug(self.goal, self.clearance)
+
+    def _choose(self, view: View, roadmap: RoadMap, costs: FloatArray, reach: Reach) -> bool:
+        """Decide where to go now; says whether that leads back over a place where the robot was."""
+        if GOAL in reach:
+            self.target = GOAL
+            self._take(roadmap.path(reach[GOAL][0]), reach[GOAL][1])
+            return False
+        if self.phase is Phase.SEARCH and self.spent > self.budget:
+            self._enter(Phase.RETURN)
+        if self.phase is not Phase.CIRCLE:
+            chain = self._route(view.pose, reach)
+            if chain:
+                return self._go(view.pose, roadmap, chain, reach)
+            self._enter(Phase.CIRCLE)
+        self._circle(view, roadmap, costs)
+        return False
+
+    def _route(self, pose: Pose, reach: Reach) -> list[int]:
+        """Way points to the target, the target first; none when it is time for DistBug."""
+        openings, memory = self.openings, self.openings.memory
+        seeds = {n: cost for n, (_, cost) in sorted(reach.items())}
+        seeds.setdefault(openings.place, math.dist((pose.x, pose.y), memory.xy[openings.place]))
+        cost, origin = memory.routes(seeds)
+        best = openings.best(cost, self.target) if self.phase is Phase.SEARCH else NOTHING
+        if best == NOTHING:
+            self._enter(Phase.RETURN)
+            best = openings.closest_place(cost)
+            if math.dist((pose.x, pose.y), memory.xy[best]) < 2.0 * self.inflation or self.tries > 6:
+                self.tries = 0
+                return []
+        if best != self.target:
+            self.target, self.tries = best, 0
+            x, y = memory.xy[best].tolist()
+            self.notes.append(Note("target", {"x": x, "y": y}))
+        self.remaining = cost[best] + math.dist(memory.xy[best], self.goal)
+        chain = [best]
+        while origin[chain[-1]] != NOTHING:
+            chain.append(origin[chain[-1]])
+        return chain
+
+    def _go(self, pose: Pose, roadmap: RoadMap, chain: list[int], reach: Reach) -> bool:
+        """Take the way to the furthest way point of the chain (target first) that is in reach."""
+        here, xy = (pose.x, pose.y), self.openings.memory.xy
+        for number in chain:
+            if number in reach and math.dist(here, xy[number]) > 0.5 * self.inflation:
+                self._take(roadmap.path(reach[number][0]), self.remaining)
+                return len(chain) > 1
+        ahead = [n for n in chain if math.dist(here, xy[n]) > 0.9 * self.inflation]
+        if not ahead:
+            self._face(float(self.openings.gaze[chain[0]]))
+            return True
+        x, y = xy[ahead[-1]].tolist()
+        bearing = math.atan2(y - pose.y, x - pose.x)
+        if abs(wrap_angle(bearing - pose.heading)) > 1.2:
+            self._face(bearing)
+            return True
+        self.tries += 1
+        if self.tries > 6:
+            self._give_up(ahead)
+        self._take(np.array((here, (x, y))), self.remaining)
+        return True
+
+    def _give_up(self, ahead: list[int]) -> None:
+        """The next piece of the route cannot be driven: forget it."""
+        if self.phase is Phase.RETURN:
+            return
+        self.tries = 0
+        if len(ahead) == 1:
+            self.openings.memory.close(ahead[0])
+        else:
+            self.openings.memory.part(ahead[-1], ahead[-2])
+
+    def _circle(self, view: View, roadmap: RoadMap, costs: FloatArray) -> None:
+        way = self.distbug.way(view, roadmap, costs)
+        if self.distbug.enclosed:
+            self.progress = Progress.NO_WAY
+            self.notes.append(Note("no_way", {"record": self.record}))
+        elif way is None:
+            self._face(self.distbug.turn or 0.0)
+        else:
+            self._take(way, math.dist(view.origin, self.goal))
+
+    def _face(self, heading: float) -> None:
+        """Turn in place to a heading."""
+        if self.turn is None:
+            self.driver.turning = 0
+        self.turn = wrap_angle(heading)
+
+    def _take(self, way: FloatArray | None, remaining: float) -> None:
+        """Drive a way; without one, the last stays in force."""
+        if way is None:
+            return
+        self.turn = None
+        self.remaining = remaining
+        self.driver.follow(way)
+        self.waypoint = (float(way[-1][0]), float(way[-1][1]))
+
+
+def _reach(roadmap: RoadMap, costs: FloatArray, known: list[int]) -> Reach:
+    """Which of the extra points (the goal, then `known`) the road map reaches."""
+    reach: Reach = {}
+    for point in np.flatnonzero((roadmap.marks >= 0) & np.isfinite(costs)).tolist():
+        mark = int(roadmap.marks[point])
+        reach[GOAL if mark == 0 else known[mark - 1]] = (point, float(costs[point]))
+    return reach

@@ -1,0 +1,98 @@
+"""Which obstacle stands in the way, and where the fan turns because of it (thesis 3.4.1, Algorithm 2 a).
+
+Only what is nearer than the classification range (3 m) counts. The thesis names the cases and does not
+say how they are told apart; here a hit belongs to the right, the front or the left third of the view,
+and the nearest of them decides: in front with something beside it, a corner; at one side, a wall to follow,
+even if it reaches into the front.
+"""
+
+import math
+from enum import Enum
+
+import numpy as np
+
+from robot_agent.core.planning.view import BoolArray, View
+from robot_agent.core.scan import FloatArray
+
+FRONT_HALF = math.radians(30.0)
+"""Half opening of the front third [rad]."""
+
+
+WALL_BEAMS = 8
+"""Beams to each side of the nearest one that show the direction of a wall."""
+
+
+class Obstacle(Enum):
+    """The cases of Algorithm 2."""
+
+    NONE = "none"
+    LEFT_CORNER = "left corner"
+    RIGHT_CORNER = "right corner"
+    FRONT = "front"
+    LEFT = "left"
+    RIGHT = "right"
+    BOTH = "left and right"
+
+
+def classify(view: View, within: float) -> Obstacle:
+    """The case of this view, of hits nearer than `within` [m]."""
+    angles = view.fan.angles
+    close = view.solid & (view.sight < within)
+    if not close.any():
+        return Obstacle.NONE
+    left, right = close & (angles > FRONT_HALF), close & (angles < -FRONT_HALF)
+    front = bool(close[np.abs(angles) <= FRONT_HALF].any())
+    facing = abs(angles[_nearest(view, close)]) <= FRONT_HALF
+    sides = int(left.any()) + int(right.any())
+    if not sides:
+        return Obstacle.FRONT
+    nearer_left = bool(angles[_nearest(view, left | right)] > 0.0)
+    if facing or (front and sides == 2):
+        return Obstacle.LEFT_CORNER if nearer_left else Obstacle.RIGHT_CORNER
+    if sides == 2:
+        return Obstacle.BOTH
+    return Obstacle.LEFT if nearer_left else Obstacle.RIGHT
+
+
+def _nearest(view: View, beams: BoolArray) -> int:
+    """The beam with the shortest range among these."""
+    return int(np.argmin(np.where(beams, view.sight, np.inf)))
+
+
+TURNS = {
+    Obstacle.LEFT_CORNER: -math.pi / 2,
+    Obstacle.RIGHT_CORNER: math.pi / 2,
+    Obstacle.FRONT: math.pi,
+}
+"""By how much the fan turns at a corner or before a wall [rad]."""
+
+
+def fan_direction(view: View, obstacle: Obstacle, within: float) -> float:
+    """Direction of the limited fan, map frame [rad], for an obstacle beside the robot."""
+    if obstacle is Obstacle.BOTH:
+        return view.pose.heading + _middle(view, within)
+    side = view.fan.angles > 0.0 if obstacle is Obstacle.LEFT else view.fan.angles < 0.0
+    close = side & view.solid & (view.sight < within)
+    nearest = _nearest(view, close)
+    beams = np.flatnonzero(close[: nearest + WALL_BEAMS + 1])
+    beams = beams[beams >= nearest - WALL_BEAMS]
+    return _along(view.origin + view.directions[beams] * view.sight[beams, None], view.pose.heading)
+
+
+def _along(wall: FloatArray, heading: float) -> float:
+    """Direction of the line through hits of a wall, the one of the two that is closer to the heading."""
+    spread = wall - wall.mean(axis=0)
+    sxx, syy = float((spread[:, 0] ** 2).sum()), float((spread[:, 1] ** 2).sum())
+    direction = 0.5 * math.atan2(2.0 * float((spread[:, 0] * spread[:, 1]).sum()), sxx - syy)
+    return direction if math.cos(direction - heading) >= 0.0 else direction + math.pi
+
+
+def _middle(view: View, within: float) -> float:
+    """Bearing of the middle of the widest run of beams that are free as far as `within` [rad]."""
+    free = np.concatenate(([False], view.sight >= within, [False]))
+    edges = np.flatnonzero(np.diff(free.astype(np.int8)))
+    starts, ends = edges[::2], edges[1::2] - 1
+    if not len(starts):
+        return 0.0
+    widest = int(np.argmax(ends - starts))
+    return float(0.5 * (view.fan.angles[starts[widest]] + view.fan.angles[ends[widest]]))

@@ -1,0 +1,229 @@
+"""Where the seen borders on the unseen: openings, and which of them is the most promising.
+
+An opening is a place of a road map beside something that the laser did not see. It is remembered until
+it turns out to lead nowhere new. Under the freespace assumption (Koenig, Tovey and Smirnov,
+"Performance bounds for planning in unknown terrain", Artificial Intelligence 147, 2003) the best one
+has the least sum of the known way to it and the straight distance from it to the goal.
+"""
+
+import math
+
+import numpy as np
+
+from onehop.contracts.geometry import Pose, wrap_angle
+from robot_agent.core.planning.memory import CLOSED, OPENING, PLACE, WayPoints
+from robot_agent.core.planning.roadmap import RoadMap
+from robot_agent.core.planning.view import BoolArray, View, squared_distances
+from robot_agent.core.scan import FloatArray
+
+NOTHING = -1
+
+Edge = tuple[FloatArray, FloatArray]
+"""Points at the edge of the unseen, (n, 2) [m], and the direction to the unseen side, (n,) [rad]."""
+
+MOST_MOVES = 8
+"""Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
+
+
+class Openings:
+    """Way points with the rules that make, close and choose openings. Lengths follow the inflation [m]."""
+
+    def __init__(self, capacity: int, goal: FloatArray, inflation: float) -> None:
+        self.memory = WayPoints(capacity)
+        self.gaze: FloatArray = np.zeros(capacity)
+        self.moves = np.zeros(capacity, dtype=np.uint8)
+        self.goal = goal
+        self.inflation = inflation
+        self.spacing = 4.0 * inflation
+        self.rim = 3.0 * inflation
+        self.place = NOTHING
+
+    @property
+    def nbytes(self) -> int:
+        """Bytes of the memory, full or empty."""
+        return self.memory.nbytes + int(self.gaze.nbytes + self.moves.nbytes)
+
+    def in_view(self, view: View) -> list[int]:
+        """Places and openings in view, ascending."""
+        numbers = self.memory.of_kind(PLACE, OPENING)
+        return [int(n) for n in numbers[view.visible(self.memory.xy[numbers])]]
+
+    def note_place(self, pose: Pose, reach: dict[int, float], laser_range: float) -> None:
+        """Where the robot is becomes a place if none is near; edges lead to the way points in reach."""
+        memory = self.memory
+        nearest, distance = memory.nearest(pose.x, pose.y, PLACE)
+        before = self.place
+        if nearest == NOTHING or (distance > 1.2 * self.spacing and memory.has_room):
+            self.place = memory.add(pose.x, pose.y, PLACE)
+            self.gaze[self.place] = pose.heading
+        elif distance < 1.8 * self.inflation:
+            self.place = nearest
+        if before == NOTHING:
+            self._note_rear(pose, laser_range)
+        elif before != self.place:
+            memory.join(before, self.place, math.dist(memory.xy[before], memory.xy[self.place]))
+        offset = math.dist((pose.x, pose.y), memory.xy[self.place])
+        for number, cost in sorted(reach.items()):
+            memory.join(self.place, number, cost + offset)
+
+    def _note_rear(self, pose: Pose, laser_range: float) -> None:
+        """What lies behind the first pose is unseen: an opening, as far away as the laser reaches."""
+        rear = self.memory.add(pose.x, pose.y, OPENING)
+        self.gaze[rear] = wrap_angle(pose.heading + math.pi)
+        self.memory.join(self.place, rear, laser_range)
+
+    def note(
+        self, view: View, roadmap: RoadMap, costs: FloatArray, known: list[int], record: float
+    ) -> None:
+        """Close the openings that are in full view or move them on, and remember the new ones.
+
+        record: least distance to the goal that the robot ever had [m].
+        """
+        rim, outward = unseen_rim(view, 2.0 * self.inflation, self.goal, record)
+        near_rim = squared_distances(roadmap.points, rim)
+        beside = near_rim.min(axis=1, initial=np.inf) < self.rim**2
+        candidates = np.flatnonzero(np.isfinite(costs) & beside)
+        candidates = candidates[candidates > 0]
+        outward = outward[near_rim.argmin(axis=1)] if len(rim) else np.zeros(len(roadmap.points))
+        self._refute(view, rim, known, (roadmap.points[candidates], outward[candidates]))
+        candidates = candidates[self._worth(roadmap.points[candidates], record)]
+        value = costs[candidates] + np.hypot(*(roadmap.points[candidates] - self.goal).T)
+        offset = math.dist(view.origin, self.memory.xy[self.place])
+        decided: list[int] = []
+        for point in candidates[np.argsort(value, kind="stable")].tolist():
+            here = roadmap.points[point]
+            if not self.memory.has_room:
+                break
+            if any(math.dist(here, roadmap.points[p]) < self.spacing for p in decided):
+                continue
+            decided.append(point)
+            if self._closer(here[None], record)[0] or not self._seen_before(view, here):
+                number = self.memory.add(float(here[0]), float(here[1]), OPENING)
+                self.gaze[number] = outward[point]
+                self.moves[number] = 0
+                self.memory.join(self.place, number, float(costs[point]) + offset)
+
+    def _worth(self, points: FloatArray, record: float) -> BoolArray:
+        """Which (n, 2) points are worth a new opening.
+
+        They are far enough from other openings, and either closer to the goal than the robot ever was, or
+        far enough from places and closed openings.
+        """
+        nearest = {
+            kind: squared_distances(points, self.memory.xy[self.memory.of_kind(kind)]).min(
+                axis=1, initial=np.inf
+            )
+            for kind in (PLACE, OPENING, CLOSED)
+        }
+        new = (nearest[PLACE] >= self.spacing**2) & (nearest[CLOSED] >= 0.25 * self.spacing**2)
+        return np.asarray((nearest[OPENING] >= self.spacing**2) & (new | self._closer(points, record)))
+
+    def _closer(self, points: FloatArray, record: float) -> BoolArray:
+        """Which (n, 2) points are closer to the goal than the robot ever was, by a step."""
+        return np.asarray(np.hypot(*(points - self.goal).T) < record - self.inflation)
+
+    def _seen_before(self, view: View, point: FloatArray) -> bool:
+        """Did the robot look at this place from near by before? Then it was judged there and then.
+
+        A place looked at what lay before it; nothing known now may stand in between.
+        """
+        places = self.memory.of_kind(PLACE)
+        offset = point - self.memory.xy[places]
+        near = np.hypot(*offset.T) < 0.6 * view.fan.range
+        before = np.cos(np.arctan2(offset[:, 1], offset[:, 0]) - self.gaze[places]) > 0.1
+        places = places[near & before & (places != self.place)]
+        if not len(places):
+            return False
+        ends = np.broadcast_to(point, (len(places), 2))
+        return bool(view.passable(self.memory.xy[places], ends, 0.3 * self.inflation).any())
+
+    def _refute(self, view: View, rim: FloatArray, known: list[int], edge: Edge) -> None:
+        """Openings in full view with nothing unseen around them, and those that the robot stands in and
+        looks out of: move them on with the edge of the unseen if that is near, and close the others.
+        """
+        openings = np.array([n for n in known if self.memory.kind[n] == OPENING], dtype=np.intp)
+        points = self.memory.xy[openings]
+        beside_unseen = squared_distances(points, rim).min(axis=1, initial=np.inf) < self.rim**2
+        still = beside_unseen & view.free(points, self.inflation)[0]
+        turn = self.gaze[openings] - view.pose.heading
+        behind = (np.cos(turn) < 0.36) & (np.hypot(*(points - view.origin).T) < 1.5 * self.spacing)
+        done = openings[~still & ~behind].tolist()
+        for number in done + [n for n in self._entered(view.pose) if n not in done]:
+            if not self._move_on(view, number, edge):
+                self.memory.close(number)
+
+    def _entered(self, pose: Pose) -> list[int]:
+        """Openings that the robot stands in with their unseen side in view."""
+        openings = self.memory.of_kind(OPENING)
+        near = np.hypot(*(self.memory.xy[openings] - (pose.x, pose.y)).T) < 0.4 * self.spacing
+        ahead = np.cos(self.gaze[openings] - pose.heading) > 0.5
+        return [int(n) for n in openings[near & ahead]]
+
+    def _move_on(self, view: View, number: int, edge: Edge) -> bool:
+        """The edge of the unseen recedes as the robot comes closer; its opening goes with it."""
+        points, outward = edge
+        if not len(points) or self.moves[number] >= MOST_MOVES:
+            return False
+        distance = np.hypot(*(points - self.memory.xy[number]).T)
+        distance[np.hypot(*(points - view.origin).T) < 0.5 * self.spacing] = np.inf
+        nearest = int(np.argmin(distance))
+        if distance[nearest] > 1.5 * self.spacing:
+            return False
+        self.moves[number] += 1
+        self.memory.xy[number] = points[nearest]
+        self.gaze[number] = outward[nearest]
+        return True
+
+    def best(self, cost: dict[int, float], kept: int) -> int:
+        """The reachable opening with the least g + h; `kept` stays unless another is clearly better."""
+        memory = self.memory
+        value = {
+            n: cost[n] + math.dist(memory.xy[n], self.goal)
+            for n in memory.of_kind(OPENING).tolist()
+            if n in cost
+        }
+        if not value:
+            return NOTHING
+        best = min(value, key=lambda n: (value[n], n))
+        return kept if value.get(kept, math.inf) <= value[best] + self.spacing else best
+
+    def closest_place(self, cost: dict[int, float]) -> int:
+        """The reachable place that is closest to the goal."""
+        places: list[int] = [n for n in self.memory.of_kind(PLACE).tolist() if n in cost]
+        return min(places, key=lambda n: (math.dist(self.memory.xy[n], self.goal), n))
+
+
+def edge_samples(view: View, margin: float) -> FloatArray:
+    """Points where outlines leave the laser's range, (n, 2) [m]: chance may miss them."""
+    beside = np.convolve(~view.open_beams, np.ones(13), mode="same") > 0
+    far = np.flatnonzero(view.open_beams & beside)
+    return view.origin + view.directions[far] * (view.fan.range - margin)
+
+
+def unseen_rim(view: View, gap: float, goal: FloatArray, record: float) -> tuple[FloatArray, FloatArray]:
+    """Points where what is seen borders on the unseen, (n, 2) [m], and the direction to the unseen side.
+
+    They lie along the edge of the shadow between neighbouring beams whose ranges differ by more than
+    `gap`, since nothing narrower lets the robot through, and at the end of open beams. Of these only
+    the ones beside an obstacle count, where its outline leaves the laser's range, and the ones closer to
+    the goal than `record`: a shortest way bends nowhere else, so these are the nodes of TangentBug's
+    local tangent graph (Kamon, Rimon and Rivlin 1998).
+    """
+    sight = view.sight
+    heading = view.fan.angles + view.pose.heading
+    ends = view.origin + view.directions * sight[:, None]
+    beside = np.convolve(~view.open_beams, np.ones(13), mode="same") > 0
+    closer = np.hypot(*(ends - goal).T) < record
+    closer[1::4] = closer[2::4] = closer[3::4] = False
+    far = np.flatnonzero(view.open_beams & (beside | closer))
+    points = [ends[far]]
+    outward = [heading[far]]
+    for beam in np.flatnonzero(np.abs(np.diff(sight)) > gap).tolist():
+        left_is_far = sight[beam + 1] > sight[beam]
+        near, long = (beam, beam + 1) if left_is_far else (beam + 1, beam)
+        radius = np.arange(sight[near] + 0.25 * gap, sight[long], 0.7 * gap)
+        points.append(view.origin + view.directions[long] * radius[:, None])
+        outward.append(
+            np.full(len(radius), heading[long] + (-math.pi / 2 if left_is_far else math.pi / 2))
+        )
+    return np.concatenate(points), np.concatenate(outward)

@@ -1,0 +1,204 @@
+"""What one scan shows: points that were hit, what is visible, and how much room is left around a way.
+
+Works in the map frame. Beside the beams it holds `beside`: points that left the field of view a moment
+ago and still lie beside or behind the robot (a bounded memory, see `Afterimage`); a laser that looks
+180 degrees ahead cannot turn around a corner without them.
+"""
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from onehop.contracts.geometry import Pose
+from onehop.contracts.messages import Ranges
+from robot_agent.core.scan import Fan, FloatArray
+
+BoolArray = npt.NDArray[np.bool_]
+Float32Array = npt.NDArray[np.float32]
+
+BLOCK = 16384
+"""Elements worked on at once: 64 KB stay in the cache and off the page allocator."""
+
+NO_POINTS: FloatArray = np.empty((0, 2))
+
+
+class View:
+    """One scan seen from one pose.
+
+    sight: (n_beams,) float64 [m], free range along each beam, laser range where nothing returned.
+    obstacles: (n, 2) float64 [m], what the beams hit, team mates left out, and `beside`. Of hits closer
+    together than `grain` (a tenth of the inflation) some are left out: a clearance c is then wrong by at
+    most grain^2 / (8 c).
+    """
+
+    def __init__(
+        self,
+        fan: Fan,
+        pose: Pose,
+        scan: Ranges,
+        moving: frozenset[int],
+        grain: float,
+        beside: FloatArray = NO_POINTS,
+    ) -> None:
+        self.fan = fan
+        self.pose = pose
+        self.origin: FloatArray = np.array((pose.x, pose.y))
+        seen = np.isfinite(scan)
+        self.sight: FloatArray = np.where(seen, scan, fan.range).astype(np.float64)
+        self.open_beams: BoolArray = ~seen
+        solid = seen.copy()
+        if moving:
+            solid[sorted(moving)] = False
+        self.solid: BoolArray = solid
+        c, s = math.cos(pose.heading), math.sin(pose.heading)
+        d = fan.directions
+        self.directions: FloatArray = np.column_stack(
+            (c * d[:, 0] - s * d[:, 1], s * d[:, 0] + c * d[:, 1])
+        )
+        hits = self.origin + self.directions[solid] * self.sight[solid, None]
+        self.obstacles: FloatArray = np.concatenate((_outline(hits, grain), beside))
+
+    def polar(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Bearing [rad, relative to the heading, in (-pi, pi]] and distance [m] of (n, 2) points."""
+        dx, dy = points[:, 0] - self.pose.x, points[:, 1] - self.pose.y
+        bearing = np.arctan2(dy, dx) - self.pose.heading
+        return np.arctan2(np.sin(bearing), np.cos(bearing)), np.hypot(dx, dy)
+
+    def visible(self, points: FloatArray) -> BoolArray:
+        """Which (n, 2) points lie in front of what both neighbouring beams hit."""
+        bearing, distance = self.polar(points)
+        angles = self.fan.angles
+        step = angles[1] - angles[0]
+        place = (bearing - angles[0]) / step
+        inside = (place >= -1e-6) & (place <= len(angles) - 1 + 1e-6)
+        low = np.clip(np.floor(place).astype(np.intp), 0, len(angles) - 1)
+        high = np.minimum(low + 1, len(angles) - 1)
+        shown: BoolArray = inside & (distance <= np.minimum(self.sight[low], self.sight[high]))
+        return shown
+
+    def surrounded(self, points: FloatArray, margin: float) -> BoolArray:
+        """Which (n, 2) points are so far inside the field of view that nothing unseen beside its edge can
+        be closer than `margin`; what is near the robot counts, because it was in view a moment ago.
+        """
+        bearing, distance = self.polar(points)
+        inside = np.clip(self.fan.angles[-1] - np.abs(bearing), 0.0, math.pi / 2)
+        return np.asarray((distance * np.sin(inside) >= margin) | (distance < 4.0 * margin))
+
+    def allowance(self, clearance: float) -> Float32Array:
+        """Least distance to keep from each obstacle, squared, (n,) [m2].
+
+        It is `clearance`, but never more than the robot has now: who starts inside an inflated
+        obstacle may move out of it, not further in.
+        """
+        have = squared_distances(self.origin[None], self.obstacles)[0]
+        return np.asarray(np.minimum(clearance**2, np.maximum(np.sqrt(have) - 0.01, 0.0) ** 2))
+
+    def free(self, points: FloatArray, clearance: float) -> tuple[BoolArray, FloatArray]:
+        """Which (n, 2) points keep `clearance` (or the allowance), and the room of each, (n,) [m]."""
+        distance2 = squared_distances(points, self.obstacles)
+        keeps = (distance2 >= self.allowance(clearance)).all(axis=1)
+        return np.asarray(keeps), np.sqrt(distance2.min(axis=1, initial=np.inf))
+
+    def passable(self, a: FloatArray, b: FloatArray, clearance: float) -> BoolArray:
+        """Which segments a[i]-b[i], (n, 2) each, keep `clearance` (or the allowance) all along."""
+        room = segment_distances2(a, b, self.obstacles) >= self.allowance(clearance)
+        return np.asarray(room.all(axis=1))
+
+    def passable_twice(
+        self, a: FloatArray, b: FloatArray, tight: float, wide: float
+    ) -> tuple[BoolArray, BoolArray]:
+        """`passable` for two clearances at once."""
+        distance2 = segment_distances2(a, b, self.obstacles)
+        keeps_tight = (distance2 >= self.allowance(tight)).all(axis=1)
+        keeps_wide = (distance2 >= self.allowance(wide)).all(axis=1)
+        return np.asarray(keeps_tight), np.asarray(keeps_wide)
+
+
+class Afterimage:
+    """Points that left the field of view but are still near: at most `capacity`, 16 B each."""
+
+    def __init__(self, reach: float, capacity: int = 256) -> None:
+        self.reach = reach
+        self.capacity = capacity
+        self.points: FloatArray = NO_POINTS
+
+    def beside(self, pose: Pose, half_view: float) -> FloatArray:
+        """The remembered points that the laser cannot see from `pose`, (n, 2) [m]."""
+        dx, dy = self.points[:, 0] - pose.x, self.points[:, 1] - pose.y
+        bearing = np.arctan2(dy, dx) - pose.heading
+        hidden = np.cos(bearing) < math.cos(half_view - 0.02)
+        return self.points[hidden & (dx * dx + dy * dy < self.reach**2)]
+
+    def keep(self, view: View) -> None:
+        """Remember the obstacles of this view that are within reach, the nearest first."""
+        points = view.obstacles
+        distance2 = squared_distances(view.origin[None], points)[0]
+        near = np.flatnonzero(distance2 < (1.5 * self.reach) ** 2)
+        order = near[np.argsort(distance2[near], kind="stable")]
+        self.points = points[order[: self.capacity]]
+
+
+def _outline(hits: FloatArray, grain: float) -> FloatArray:
+    """The same outline with other points: one for each step of `grain` along it where hits are dense,
+    and one more between hits that are too far apart to see a wall by, but not far enough to pass.
+    """
+    if len(hits) < 3:
+        return hits
+    step = np.hypot(*np.diff(hits, axis=0).T)
+    cell = np.floor(np.cumsum(np.minimum(step, grain)) / grain)
+    keep = np.concatenate(([True], np.diff(cell, prepend=0.0) > 0))
+    keep[-1] = True
+    wide = np.flatnonzero((step > 5.0 * grain) & (step < 20.0 * grain))
+    return np.concatenate((hits[keep], 0.5 * (hits[wide] + hits[wide + 1])))
+
+
+def squared_distances(a: FloatArray, b: FloatArray) -> Float32Array:
+    """All squared distances between (n, 2) and (m, 2) points, (n, m) float32 [m2].
+
+    Single precision relative to the first point, and in place: these matrices are most of a planning
+    moment, and allocating fresh ones costs more than filling them.
+    """
+    if not len(a) or not len(b):
+        return np.empty((len(a), len(b)), dtype=np.float32)
+    ax, ay = _single(a, a[0])
+    bx, by = _single(b, a[0])
+    dx = ax[:, None] - bx
+    dy = ay[:, None] - by
+    dx *= dx
+    dy *= dy
+    dx += dy
+    return dx
+
+
+def segment_distances2(a: FloatArray, b: FloatArray, points: FloatArray) -> Float32Array:
+    """Squared distances of (m, 2) points from segments a[i]-b[i], (n, m) float32 [m2]; as above."""
+    result = np.empty((len(a), len(points)), dtype=np.float32)
+    if not result.size:
+        return result
+    ax, ay = _single(a, a[0])
+    bx, by = _single(b, a[0])
+    ox, oy = _single(points, a[0])
+    dx, dy = bx - ax, by - ay
+    over_length2 = np.float32(1.0) / np.maximum(dx * dx + dy * dy, np.float32(1e-9))
+    rows = max(1, BLOCK // len(points))
+    for low in range(0, len(a), rows):
+        part = slice(low, low + rows)
+        px = np.subtract(ox, ax[part, None], out=result[part])
+        py = oy - ay[part, None]
+        t = px * dx[part, None]
+        work = py * dy[part, None]
+        t += work
+        t *= over_length2[part, None]
+        np.clip(t, 0.0, 1.0, out=t)
+        px -= np.multiply(t, dx[part, None], out=work)
+        py -= np.multiply(t, dy[part, None], out=work)
+        px *= px
+        py *= py
+        px += py
+    return result
+
+
+def _single(points: FloatArray, origin: FloatArray) -> tuple[Float32Array, Float32Array]:
+    """Both coordinates relative to an origin, (n,) float32 each [m]."""
+    return (points[:, 0] - origin[0]).astype(np.float32), (points[:, 1] - origin[1]).astype(np.float32)

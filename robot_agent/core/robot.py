@@ -1,0 +1,237 @@
+"""One robot: everything that it knows in, everything that it does out (`Percept -> Action`).
+
+Order of a tick: hear (protocol), drive (planner when leading, tracking when following), speak.
+"""
+
+import math
+
+from onehop.contracts.airtime import ideal_throughput_bps
+from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map
+from onehop.contracts.messages import Action, Note, Percept, Ranges
+from onehop.contracts.randomness import generator
+from onehop.contracts.scenario import Briefing
+from onehop.contracts.team import Mode, Status
+from robot_agent.core.follower import IN_POSITION, Follower
+from robot_agent.core.formation import Formation, formation
+from robot_agent.core.gains import make_policy
+from robot_agent.core.leader import Leader, PathfinderMaker
+from robot_agent.core.messages import Phase
+from robot_agent.core.modes import Event
+from robot_agent.core.planning import make_pathfinder
+from robot_agent.core.protocol import NANOSECONDS, Protocol
+from robot_agent.core.safety import SafetyFilter
+from robot_agent.core.scan import Fan
+from robot_agent.core.tracking import sampled
+from robot_agent.core.trail import behind
+
+THESIS_THRESHOLD_BPS = 0.5333e6
+"""Minimum acceptable throughput [bit/s] (thesis 3.8.3)."""
+
+THRESHOLD_SHARE = THESIS_THRESHOLD_BPS / 0.7792e6
+"""The same as a share of the ideal throughput at 1 Mb/s and 800 B (eq. 3.15, full exchange)."""
+
+SETTLING_TICKS = 100
+"""Ticks without coming nearer to its last slot after which a follower stops where it is."""
+
+FOLLOWER_MODES = (Mode.FOLLOWING, Mode.NARROW, Mode.BORDER)
+
+
+def threshold_bps(briefing: Briefing) -> float:
+    """Below this throughput a follower hurries [bit/s]."""
+    if briefing.gains.threshold == "thesis":
+        return THESIS_THRESHOLD_BPS
+    ideal = ideal_throughput_bps(briefing.radio.rate_mbps, briefing.team.next_msdu_bytes)
+    return THRESHOLD_SHARE * ideal
+
+
+class Robot:
+    """One incarnation of one robot."""
+
+    def __init__(self, briefing: Briefing, make_pathfinder: PathfinderMaker = make_pathfinder) -> None:
+        self._briefing = briefing
+        rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
+        body, period = briefing.body, briefing.period_ns / NANOSECONDS
+        fan = Fan(body)
+        gains = sampled(briefing.gains, period)
+        dodge = tuple(float(share) for share in rng.random(64))
+        self._follower = Follower(body, gains, fan, dodge)
+        self._leader = Leader(briefing, gains, fan, make_pathfinder, rng)
+        self._safety = SafetyFilter(body, fan, period)
+        self._threshold = threshold_bps(briefing)
+        self._policy = make_policy(briefing.gains, self._threshold)
+        self._protocol: Protocol | None = None
+        self._formation: Formation | None = None
+        self._formation_key: tuple[tuple[int, ...], bool] | None = None
+        self._slot_key: tuple[Pose, tuple[int, ...], bool, bool] | None = None
+        self._slot = Pose(0.0, 0.0, 0.0)
+        self._period_ns = round(briefing.team.next_period * NANOSECONDS)
+        self._in_position = False
+        self._next_ns = 0
+        self._k_rho = briefing.gains.k_rho_min
+        self._throughput = 0.0
+        self._error = 0.0
+        self._target = (0.0, 0.0)
+        self._remaining = 0.0
+        self._best_error = math.inf
+        self._settling = 0
+        self._notes: list[Note] = []
+
+    def step(self, percept: Percept) -> Action:
+        """Everything that the robot does at this tick. Bad messages are counted, never raised."""
+        protocol = self._protocol
+        if protocol is None:
+            protocol = self._protocol = Protocol(self._briefing, percept.time_ns)
+        now_ns, pose = percept.time_ns, percept.pose
+        protocol.receive(now_ns, pose, self._in_position, percept.inbox)
+        nearest = float(percept.scan.min())
+        if protocol.leading:
+            twist = self._lead(protocol, now_ns, pose, percept.scan, nearest)
+        else:
+            twist = self._follow(protocol, now_ns, pose, percept.scan, nearest)
+        twist = self._safety.filtered(twist, percept.scan, nearest)
+        if not (protocol.leading and protocol.mode is Mode.SETUP and twist.w):
+            protocol.speak(now_ns, pose, self._leader.trail)
+        notes = (*self._notes, *protocol.take_notes())
+        self._notes = []
+        return Action(
+            tick=percept.tick,
+            incarnation=self._briefing.incarnation,
+            twist=twist,
+            outbox=protocol.take_outbox(),
+            speed=abs(twist.v),
+            remaining_distance=self._remaining,
+            status=self._status(protocol),
+            notes=notes,
+        )
+
+    @property
+    def ignored(self) -> dict[str, int]:
+        """How many messages were ignored so far, by why: garbled, stale, foreign."""
+        return dict(self._protocol.counters) if self._protocol is not None else {}
+
+    def _status(self, protocol: Protocol) -> Status:
+        leading = protocol.leading
+        return Status(
+            mode=protocol.mode,
+            epoch=protocol.epoch,
+            leader=protocol.leader,
+            members=protocol.members,
+            shape=self._shape(protocol).shape,
+            throughput_bps=-1.0 if leading else self._throughput,
+            threshold_bps=self._threshold,
+            k_rho=self._k_rho,
+            error=self._error,
+            target_x=self._target[0],
+            target_y=self._target[1],
+        )
+
+    def _shape(self, protocol: Protocol) -> Formation:
+        """Formation of the roster in force."""
+        key = (protocol.members, protocol.narrow)
+        if self._formation is None or key != self._formation_key:
+            team = self._briefing.team
+            spacing = team.narrow_spacing if protocol.narrow else team.spacing
+            self._formation = formation(protocol.members, protocol.narrow, spacing)
+            self._formation_key = key
+        return self._formation
+
+    def _lead(self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float) -> Twist:
+        goal = self._briefing.goal
+        self._target = (goal.x, goal.y)
+        self._error = self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
+        self._in_position = True
+        self._follower.halt()
+        twist = self._leader.step(protocol, now_ns, pose, scan, nearest)
+        self._notes.extend(self._leader.notes)
+        if self._leader.remaining > 0.0:
+            self._remaining = self._leader.remaining
+        return twist
+
+    def _follow(
+        self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float
+    ) -> Twist:
+        self._leader.begin()
+        self._measure(protocol, now_ns)
+        link = protocol.link
+        leader = link.pose
+        if leader is None:
+            self._in_position = False
+            self._target = (pose.x, pose.y)
+            return STANDSTILL
+        target = self._slot_pose(protocol, leader)
+        self._target = (target.x, target.y)
+        self._error = math.hypot(target.x - pose.x, target.y - pose.y)
+        goal = self._briefing.goal
+        self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
+        self._settle(protocol)
+        if self._at_rest(protocol):
+            return STANDSTILL
+        moves = protocol.phase is Phase.DRIVING
+        standoff = math.hypot(target.x - leader.x, target.y - leader.y)
+        twist = self._follower.step(
+            pose, scan, nearest, target, link.trail, standoff, moves, self._k_rho
+        )
+        self._tell_border(protocol)
+        return twist
+
+    def _slot_pose(self, protocol: Protocol, leader: Pose) -> Pose:
+        """This robot's slot in the map frame, from the leader's last pose."""
+        key = (leader, protocol.members, protocol.narrow, protocol.mode is Mode.JOINING)
+        if key != self._slot_key:
+            self._slot_key, self._slot = key, self._placed(protocol, leader)
+            self._best_error = math.inf
+        return self._slot
+
+    def _placed(self, protocol: Protocol, leader: Pose) -> Pose:
+        shape = self._shape(protocol)
+        if protocol.mode is Mode.JOINING or shape.leader == self._briefing.robot:
+            x, y = to_map(leader, -self._briefing.team.spacing, 0.0)
+        else:
+            slot = shape.slot(self._briefing.robot)
+            if protocol.narrow and len(protocol.link.trail) > 1:
+                return behind(leader, protocol.link.trail, -slot.x)
+            x, y = to_map(leader, slot.x, slot.y)
+        return Pose(x, y, leader.heading)
+
+    def _measure(self, protocol: Protocol, now_ns: int) -> None:
+        """Throughput of each Next, 0 for a missing one, and the gain that follows (thesis 3.5)."""
+        link = protocol.link
+        if link.next_ns > self._next_ns:
+            self._next_ns = link.next_ns
+            self._throughput = link.throughput_bps
+            self._k_rho = self._policy.heard(link.throughput_bps)
+        elif now_ns - self._next_ns > self._period_ns * 5 // 4:
+            self._next_ns += self._period_ns
+            self._throughput = 0.0
+            self._k_rho = self._policy.heard(0.0)
+
+    def _settle(self, protocol: Protocol) -> None:
+        """Whether the robot is in its slot, or, in profile `team`, as near to it as it can get.
+
+        Differs: a slot may lie inside a wall; the thesis would wait for it until the setup timeout.
+        """
+        if protocol.phase is Phase.DRIVING or self._error < self._best_error - 0.05:
+            self._best_error, self._settling = self._error, 0
+        else:
+            self._settling += 1
+        near = protocol.open and self._error < self._briefing.team.spacing / 2.0
+        self._in_position = self._error <= IN_POSITION or (near and self._settling > SETTLING_TICKS)
+
+    def _at_rest(self, protocol: Protocol) -> bool:
+        """At the end of the mission: stop in the slot, or where nothing more is gained."""
+        if protocol.mode is Mode.STOPPED and protocol.phase is not Phase.FINAL:
+            return True
+        if protocol.phase is not Phase.FINAL:
+            return False
+        rest = self._in_position or self._settling > SETTLING_TICKS
+        if protocol.mode in FOLLOWER_MODES and rest:
+            protocol.fire(Event.ARRIVED)
+        return protocol.mode is Mode.STOPPED
+
+    def _tell_border(self, protocol: Protocol) -> None:
+        """Border following interrupts Algorithm 1 and resumes it (thesis 3.3.4)."""
+        border = self._follower.border
+        if border and protocol.mode in (Mode.FOLLOWING, Mode.NARROW):
+            protocol.fire(Event.OBSTRUCTED)
+        elif not border and protocol.mode is Mode.BORDER:
+            protocol.fire(Event.CLEARED_NARROW if protocol.narrow else Event.CLEARED)

@@ -1,0 +1,54 @@
+"""The table of modes, and the diagram drawn from it."""
+
+import pytest
+
+from onehop.contracts.team import Mode
+from robot_agent.core.modes import RESTART, START, TABLE, Event, diagram, next_mode
+
+
+def test_every_mode_has_a_row_and_can_be_reached():
+    assert set(TABLE) == set(Mode)
+    reached, frontier = {START, RESTART}, [START, RESTART]
+    while frontier:
+        for target in TABLE[frontier.pop()].values():
+            if target not in reached:
+                reached.add(target)
+                frontier.append(target)
+    assert reached == set(Mode)
+
+
+def test_every_event_means_something_somewhere():
+    assert {event for row in TABLE.values() for event in row} == set(Event)
+
+
+def test_an_obstacle_interrupts_algorithm_1_and_the_clear_resumes_it():
+    """Thesis 3.3.4."""
+    assert next_mode(Mode.FOLLOWING, Event.OBSTRUCTED) is Mode.BORDER
+    assert next_mode(Mode.BORDER, Event.TOLD_NEXT) is Mode.BORDER
+    assert next_mode(Mode.BORDER, Event.CLEARED) is Mode.FOLLOWING
+
+
+@pytest.mark.parametrize("mode", [Mode.SETUP, Mode.FOLLOWING, Mode.NARROW, Mode.BORDER, Mode.STOPPED])
+def test_a_silent_leader_is_lost_from_every_mode_of_a_follower(mode):
+    assert next_mode(mode, Event.LEADER_SILENT) is Mode.LOST_LEADER
+
+
+def test_every_mode_can_come_to_lead_and_to_follow():
+    for mode in Mode:
+        assert next_mode(mode, Event.ELECTED) is Mode.LEADING
+        assert next_mode(mode, Event.TOLD_NEXT) in (Mode.FOLLOWING, Mode.BORDER)
+
+
+def test_a_transition_that_the_table_lacks_is_an_error_that_names_it():
+    with pytest.raises(LookupError, match="no transition from leading on obstructed"):
+        next_mode(Mode.LEADING, Event.OBSTRUCTED)
+
+
+def test_diagram_shows_every_pair_of_modes_of_the_table_once():
+    lines = diagram().splitlines()
+    edges = {
+        (mode, target) for mode, row in TABLE.items() for target in row.values() if target is not mode
+    }
+    drawn = [line for line in lines if "-->" in line and "[*]" not in line]
+    assert len(drawn) == len(edges)
+    assert lines[0] == "stateDiagram-v2"

@@ -1,0 +1,130 @@
+"""Random and given start poses, and starts and goals that are refused."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from onehop.contracts.errors import ScenarioError
+from onehop.contracts.scenario import GoalSection, MapSection, Scenario, StartSection, TeamSection
+from world_server.core.mapfile import load_map
+from world_server.core.placement import start_poses
+
+WALL = ((20.0, 0.0), (20.5, 0.0), (20.5, 36.0), (20.0, 36.0))
+YARD = MapSection(width=40.0, height=40.0, obstacles=(WALL,))
+WALLS = load_map(YARD, {})
+PLAN = Scenario(name="yard", goal=GoalSection(35.0, 35.0), map=YARD, start=StartSection(10.0, 10.0))
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=st.integers(0, 2**32), x=st.floats(1.0, 19.0), y=st.floats(1.0, 35.0))
+def test_random_robots_are_apart_clear_and_in_one_room(seed: int, x: float, y: float) -> None:
+    poses = start_poses(replace(PLAN, seed=seed, start=StartSection(x, y)), WALLS)
+    assert poses.shape == (6, 3)
+    assert (WALLS.clearance(poses[:, :2]) >= 0.5).all()
+    gaps = np.hypot(*(poses[:, None, :2] - poses[None, :, :2]).transpose(2, 0, 1))
+    assert gaps[np.triu_indices(6, 1)].min() >= 1.2
+    assert (poses[:, 0] < 20.0).all()
+    assert (np.abs(poses[:, 2]) <= math.pi).all()
+
+
+def test_a_team_of_six_starts_within_eight_metres_of_each_other() -> None:
+    for seed in range(50):
+        poses = start_poses(replace(PLAN, seed=seed), WALLS)
+        gaps = np.hypot(*(poses[:, None, :2] - poses[None, :, :2]).transpose(2, 0, 1))
+        assert gaps.max() < 8.0
+
+
+def test_a_large_team_finds_room() -> None:
+    poses = start_poses(replace(PLAN, team=TeamSection(size=50)), WALLS)
+    assert len(poses) == 50
+    assert np.hypot(poses[:, 0] - 10.0, poses[:, 1] - 10.0).max() < 15.0
+
+
+def test_the_seed_alone_fixes_the_start() -> None:
+    np.testing.assert_array_equal(start_poses(PLAN, WALLS), start_poses(PLAN, WALLS))
+    assert (start_poses(PLAN, WALLS) != start_poses(replace(PLAN, seed=2), WALLS)).any()
+
+
+def test_headings_point_everywhere() -> None:
+    poses = [start_poses(replace(PLAN, seed=seed), WALLS) for seed in range(60)]
+    headings = np.concatenate(poses)[:, 2]
+    assert np.histogram(headings, bins=6, range=(-math.pi, math.pi))[0].min() > 30
+
+
+def test_a_given_radius_is_kept() -> None:
+    poses = start_poses(replace(PLAN, start=StartSection(10.0, 10.0, radius=8.0)), WALLS)
+    assert 4.0 < np.hypot(poses[:, 0] - 10.0, poses[:, 1] - 10.0).max() <= 8.0
+
+
+def test_places_are_spread_evenly_over_the_disc() -> None:
+    """The mean distance of points in a disc of radius r from its centre is 2 r / 3."""
+    field = load_map(MapSection(width=60.0, height=60.0), {})
+    wide = replace(PLAN, start=StartSection(30.0, 30.0, radius=25.0))
+    poses = np.concatenate([start_poses(replace(wide, seed=seed), field) for seed in range(100)])
+    assert np.hypot(poses[:, 0] - 30.0, poses[:, 1] - 30.0).mean() == pytest.approx(50.0 / 3.0, abs=0.8)
+
+
+def test_given_poses_are_in_degrees_and_in_order_of_id() -> None:
+    start = StartSection(poses=((3.0, 4.0, 90.0), (5.0, 6.0, -180.0), (7.0, 8.0, 370.0)))
+    poses = start_poses(replace(PLAN, start=start, team=TeamSection(size=3)), WALLS)
+    expected = [[3.0, 4.0, math.pi / 2], [5.0, 6.0, math.pi], [7.0, 8.0, math.radians(10.0)]]
+    np.testing.assert_allclose(poses, expected)
+
+
+@pytest.mark.parametrize(
+    ("change", "where", "remedy"),
+    [
+        ({"start": StartSection(20.2, 20.0)}, "start.x, start.y", "nearest free point"),
+        ({"start": StartSection(19.7, 20.0)}, "start.x, start.y", "(19."),
+        ({"start": StartSection(-3.0, 20.0)}, "start.x, start.y", "nearest free point is (0.5"),
+        ({"goal": GoalSection(20.2, 20.0)}, "goal.x, goal.y", "nearest free point"),
+        ({"start": StartSection(10.0, 10.0, radius=1.0)}, "start.radius", "fewer robots"),
+        (
+            {
+                "start": StartSection(poses=((3.0, 4.0, 0.0), (0.3, 4.0, 0.0))),
+                "team": TeamSection(size=2),
+            },
+            "start.poses[1]",
+            "nearest free point",
+        ),
+        (
+            {
+                "start": StartSection(poses=((3.0, 4.0, 0.0), (3.3, 4.0, 0.0))),
+                "team": TeamSection(size=2),
+            },
+            "start.poses[1]",
+            "twice robot.radius",
+        ),
+    ],
+)
+def test_an_impossible_start_or_goal_is_refused_with_a_remedy(
+    change: dict[str, object], where: str, remedy: str
+) -> None:
+    with pytest.raises(ScenarioError) as refusal:
+        start_poses(replace(PLAN, **change), WALLS)  # type: ignore[arg-type]
+    assert refusal.value.where == where
+    assert remedy in refusal.value.remedy
+    assert "\n" not in str(refusal.value)
+
+
+def test_the_suggested_point_is_accepted() -> None:
+    near = WALLS.nearest_free(20.2, 20.0, 0.5)
+    assert near is not None
+    start_poses(replace(PLAN, goal=GoalSection(*near)), WALLS)
+
+
+def test_a_map_too_narrow_for_any_robot_is_refused() -> None:
+    tight = load_map(MapSection(width=0.8, height=40.0), {})
+    with pytest.raises(ScenarioError, match=r"nowhere on this map is 0.5 m clear"):
+        start_poses(PLAN, tight)
+
+
+def test_a_room_too_small_for_the_team_is_refused() -> None:
+    closet = load_map(MapSection(width=2.4, height=2.4), {})
+    cramped = replace(PLAN, start=StartSection(1.2, 1.2), goal=GoalSection(1.2, 1.2))
+    with pytest.raises(ScenarioError, match="no room for 6 robots"):
+        start_poses(cramped, closet)

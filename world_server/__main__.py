@@ -1,0 +1,4 @@
+from onehop.drive import node
+from world_server.process import main
+
+node.main(main)

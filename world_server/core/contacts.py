@@ -1,0 +1,50 @@
+"""Counts a touch once: from the tick in which it begins until the two are clearly apart again."""
+
+import math
+
+from onehop.contracts.messages import Contact
+from world_server.core.motion import NOBODY, WALL, Motion, Rows
+from world_server.core.walls import FloatArray
+
+_RELEASE = 0.02
+"""Gap that ends a touch [m]: a robot that trembles at a wall touches it once."""
+
+OBSTACLE = 0
+"""Stands for an obstacle where Contact.other could be a robot id."""
+
+
+class Touches:
+    """Who touches whom. robots: ids in the order of the rows of poses."""
+
+    def __init__(self, robots: tuple[int, ...], motion: Motion, radius: float) -> None:
+        self._robots = robots
+        self._motion = motion
+        self._radius = radius
+        self._touching: set[tuple[int, int]] = set()
+
+    def begun(self, poses: FloatArray, touched: Rows) -> tuple[Contact, ...]:
+        """Contacts that began in the last period; touched is what Motion.advance returned."""
+        self._touching = {pair for pair in self._touching if self._gap(poses, *pair) <= _RELEASE}
+        contacts: list[Contact] = []
+        for row, other in enumerate(touched.tolist()):
+            if other == NOBODY:
+                continue
+            pair = (row, other) if other == WALL else (min(row, other), max(row, other))
+            if pair in self._touching:
+                continue
+            self._touching.add(pair)
+            contacts.append(self._contact(poses, row, other))
+        return tuple(contacts)
+
+    def _contact(self, poses: FloatArray, row: int, other: int) -> Contact:
+        x, y = float(poses[row, 0]), float(poses[row, 1])
+        if other == WALL:
+            return Contact(robot=self._robots[row], other=OBSTACLE, x=x, y=y)
+        x, y = 0.5 * (x + float(poses[other, 0])), 0.5 * (y + float(poses[other, 1]))
+        return Contact(robot=self._robots[row], other=self._robots[other], x=x, y=y)
+
+    def _gap(self, poses: FloatArray, one: int, other: int) -> float:
+        x, y = float(poses[one, 0]), float(poses[one, 1])
+        if other == WALL:
+            return self._motion.wall_gap(x, y)
+        return math.hypot(x - poses[other, 0], y - poses[other, 1]) - 2.0 * self._radius

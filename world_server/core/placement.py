@@ -1,0 +1,114 @@
+"""Where the team starts: the scenario's own poses, or random ones by seed; and what may not be.
+
+Start and goal must be clear of obstacles by the planner's inflation, or no robot could plan there.
+"""
+
+import math
+
+import numpy as np
+
+from onehop.contracts.errors import ScenarioError
+from onehop.contracts.randomness import generator
+from onehop.contracts.scenario import Scenario
+from world_server.core.walls import FloatArray, WallMap
+
+_GAP = 0.2
+"""Distance beyond touching inflation zones that random starts keep from each other [m]."""
+
+_FILLING = 0.2
+"""Part of the start disc that the robots' zones may cover: random placing ends quickly below 0.5."""
+
+_DRAWS, _BATCH = 20, 20
+"""Random places tried for one robot before the disc is given up as too full: so many times so many."""
+
+_GROWTH, _GROWN = 1.15, 8
+"""An automatic disc that is too full grows by this factor, at most so often (3 times the radius)."""
+
+
+def start_poses(scenario: Scenario, walls: WallMap) -> FloatArray:
+    """Start poses in order of robot id, (n, 3) [m, m, rad].
+
+    Raises ScenarioError when start, goal or a pose is not free, or when there is no room for the team.
+    """
+    inflation = scenario.planner.inflation
+    _require_free(walls, "goal.x, goal.y", scenario.goal.x, scenario.goal.y, inflation)
+    if scenario.start.poses:
+        return _given_poses(scenario, walls)
+    start = scenario.start
+    _require_free(walls, "start.x, start.y", start.x, start.y, inflation)
+    count = len(scenario.team.robots)
+    apart = 2.0 * inflation + _GAP
+    random = generator(scenario.seed, "world/placement")
+    radius = start.radius or 0.5 * apart * math.sqrt(count / _FILLING)
+    for _ in range(1 if start.radius else _GROWN):
+        poses = _scatter(random, walls, scenario, radius, apart)
+        if poses is not None:
+            return poses
+        radius *= _GROWTH
+    raise ScenarioError(
+        "start.x, start.y" if not start.radius else "start.radius",
+        f"no room for {count} robots around ({start.x}, {start.y})",
+        f"a place with {apart:.1f} m from robot to robot and {inflation} m to walls, "
+        "fewer robots, or a smaller planner.inflation",
+    )
+
+
+def _scatter(
+    random: np.random.Generator, walls: WallMap, scenario: Scenario, radius: float, apart: float
+) -> FloatArray | None:
+    """Random poses in the start disc, uniform over its area; None when one robot finds no place.
+
+    Every place can be seen from the disc's centre, so that nobody starts in another room.
+    """
+    start, inflation = scenario.start, scenario.planner.inflation
+    poses: list[tuple[float, float, float]] = []
+    for _ in scenario.team.robots:
+        for _ in range(_DRAWS):
+            share, direction, turn = random.random((3, _BATCH))
+            distance, angle = radius * np.sqrt(share), math.tau * direction
+            x, y = start.x + distance * np.cos(angle), start.y + distance * np.sin(angle)
+            fits = walls.free(np.column_stack((x, y)), inflation)
+            for other in poses:
+                fits &= np.hypot(x - other[0], y - other[1]) >= apart
+            seen = (
+                k
+                for k in np.flatnonzero(fits).tolist()
+                if walls.sees(start.x, start.y, x[k], y[k], inflation)
+            )
+            chosen = next(seen, None)
+            if chosen is not None:
+                heading = math.pi - math.tau * turn[chosen]
+                poses.append((float(x[chosen]), float(y[chosen]), heading))
+                break
+        else:
+            return None
+    return np.array(poses)
+
+
+def _given_poses(scenario: Scenario, walls: WallMap) -> FloatArray:
+    poses = np.array(scenario.start.poses, dtype=np.float64)
+    poses[:, 2] = -np.remainder(np.pi - np.radians(poses[:, 2]), 2.0 * np.pi) + np.pi
+    for number, (x, y, _) in enumerate(poses):
+        _require_free(walls, f"start.poses[{number}]", x, y, scenario.planner.inflation)
+        for other in range(number):
+            distance = math.hypot(x - poses[other, 0], y - poses[other, 1])
+            if distance < 2.0 * scenario.robot.radius:
+                raise ScenarioError(
+                    f"start.poses[{number}]",
+                    f"only {distance:.2f} m from start.poses[{other}]",
+                    f"at least {2.0 * scenario.robot.radius} m, twice robot.radius",
+                )
+    return poses
+
+
+def _require_free(walls: WallMap, where: str, x: float, y: float, inflation: float) -> None:
+    if walls.is_free(x, y, inflation):
+        return
+    near = walls.nearest_free(x, y, inflation)
+    raise ScenarioError(
+        where,
+        f"({x}, {y}) is not {inflation} m clear of obstacles",
+        f"the nearest free point is ({near[0]}, {near[1]})"
+        if near
+        else f"nowhere on this map is {inflation} m clear: make planner.inflation smaller",
+    )

@@ -1,0 +1,202 @@
+"""Judges a mission from ground truth and from what the robots say of themselves.
+
+Arrived: a leader stands at the goal and everyone who is left stands still. Failed: nobody is left,
+everyone has stopped elsewhere, or the time is up. Whoever obeys a leader at the goal and is within the
+reach of its formation has arrived; the rest is lost, and the referee says since when and why.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+from onehop.contracts.geometry import Pose
+from onehop.contracts.messages import Lost, Note, Outcome, Presence, Reign
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.team import Mode, Shape, Status
+
+STILL = 0.02
+"""Speed below which a robot stands still [m/s]."""
+
+_REST_S = 2.0
+"""Standing still this long counts as having stopped [s]; a Next period of the thesis (3.3.2)."""
+
+_MARGIN = 0.1
+"""What a robot may stand beyond the goal's tolerance, for the last tick of its braking [m]."""
+
+
+class Scene(NamedTuple):
+    """What the referee looks at after a tick.
+
+    statuses: the last word of those who have said any. waiting: robots held by a fault that will end by
+    itself, whose standing still means nothing. collisions: contacts so far.
+    """
+
+    ticks: int
+    time_ns: int
+    present: tuple[Presence, ...]
+    statuses: Mapping[int, Status]
+    waiting: frozenset[int]
+    collisions: int
+
+    def mode(self, robot: int) -> Mode | None:
+        """What a robot says it is doing, if it has said anything."""
+        status = self.statuses.get(robot)
+        return None if status is None else status.mode
+
+
+class Referee:
+    """Watches one mission, tick by tick."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self._goal = scenario.goal
+        self._spacing = scenario.team.spacing
+        self._robots = scenario.team.robots
+        self._limit_ns = round(scenario.clock.limit_s * 1e9)
+        self._moved_ns = 0
+        self._reigns: list[Reign] = []
+        self._crowned: dict[int, Status] = {}
+        self._departed: dict[int, Lost] = {}
+        self._last_words: dict[int, str] = {}
+
+    def on_departure(self, robot: int, why: str, time_ns: int) -> None:
+        """A robot has left the mission."""
+        self._departed[robot] = Lost(robot=robot, at_s=time_ns / 1e9, why=why)
+        self._crowned.pop(robot, None)
+
+    def on_return(self, robot: int) -> None:
+        """A robot takes part again."""
+        self._departed.pop(robot, None)
+
+    def on_notes(self, robot: int, notes: tuple[Note, ...]) -> None:
+        """Remember the last thing a robot had to say, other than in which mode it is."""
+        for note in notes:
+            if note.kind != "mode":
+                self._last_words[robot] = note.kind.replace("_", " ")
+
+    def judge(self, scene: Scene, hope: bool) -> Outcome | None:
+        """The outcome, if the mission has one by now. hope: somebody will yet be restarted."""
+        self._watch(scene)
+        verdict = self._verdict(scene, hope)
+        return None if verdict is None else self.close(*verdict, scene)
+
+    def close(self, outcome: str, reason: str, scene: Scene) -> Outcome:
+        """The final account, whatever ended the mission."""
+        arrived = self._arrived(scene) if outcome == "arrived" else ()
+        return Outcome(
+            outcome=outcome,
+            reason=reason,
+            arrived=arrived,
+            lost=tuple(self._loss(robot, scene) for robot in self._robots if robot not in arrived),
+            leaders=tuple(self._reigns),
+            ticks=scene.ticks,
+            sim_s=scene.time_ns / 1e9,
+            collisions=scene.collisions,
+        )
+
+    def _watch(self, scene: Scene) -> None:
+        """Note who moves, and who begins to act as a leader with which roster."""
+        for one in scene.present:
+            robot = one.robot
+            if not -STILL < one.twist.v < STILL or robot in scene.waiting:
+                self._moved_ns = scene.time_ns
+            status = scene.statuses.get(robot)
+            if status is None or status.leader != robot:
+                self._crowned.pop(robot, None)
+                continue
+            before = self._crowned.get(robot)
+            self._crowned[robot] = status
+            if before is None or _roster(before) != _roster(status):
+                self._reigns.append(
+                    Reign(
+                        at_s=scene.time_ns / 1e9,
+                        leader=robot,
+                        epoch=status.epoch,
+                        members=status.members,
+                        shape=status.shape.value,
+                    )
+                )
+
+    def _verdict(self, scene: Scene, hope: bool) -> tuple[str, str] | None:
+        if not scene.present:
+            return None if hope else ("failed", "no robot is left")
+        if scene.time_ns >= self._limit_ns:
+            if self._arrived(scene):
+                return "arrived", self._arrival(scene) + " when the time was up"
+            return "failed", f"time limit of {self._limit_ns / 1e9:g} s"
+        if self._moved_ns == scene.time_ns:
+            return None
+        stopped = all(scene.mode(one.robot) is Mode.STOPPED for one in scene.present)
+        rested = scene.time_ns - self._moved_ns >= _REST_S * 1e9
+        if (stopped or rested) and self._arrived(scene):
+            return "arrived", self._arrival(scene)
+        if stopped and rested:
+            return "failed", self._stop_reason(scene)
+        return None
+
+    def _arrival(self, scene: Scene) -> str:
+        leaders = ", ".join(str(robot) for robot in self._leaders_at_goal(scene))
+        return f"robot {leaders} at the goal with {len(self._arrived(scene))} of {len(self._robots)}"
+
+    def _stop_reason(self, scene: Scene) -> str:
+        """Why nobody drives any more, in the words of those who lead."""
+        words = [
+            f"robot {one.robot}: {self._last_words[one.robot]}"
+            for one in scene.present
+            if one.robot in self._last_words and one.robot in self._crowned
+        ]
+        return "everyone stopped before the goal" + (f" ({'; '.join(words)})" if words else "")
+
+    def _from_goal(self, pose: Pose) -> float:
+        return math.hypot(pose.x - self._goal.x, pose.y - self._goal.y)
+
+    def _leaders_at_goal(self, scene: Scene) -> list[int]:
+        reach = self._goal.tolerance + _MARGIN
+        return [
+            one.robot
+            for one in scene.present
+            if one.robot in self._crowned and self._from_goal(one.pose) <= reach
+        ]
+
+    def _arrived(self, scene: Scene) -> tuple[int, ...]:
+        """Ids of those who obey a leader at the goal, are on its roster and within its formation."""
+        arrived: list[int] = []
+        for leader in self._leaders_at_goal(scene):
+            roster = self._crowned[leader]
+            reach = _extent(roster, self._spacing) + self._goal.tolerance + _MARGIN
+            for one in scene.present:
+                status = scene.statuses.get(one.robot)
+                obeys = status is not None and status.leader == leader
+                if obeys and one.robot in roster.members and self._from_goal(one.pose) <= reach:
+                    arrived.append(one.robot)
+        return tuple(sorted(arrived))
+
+    def _loss(self, robot: int, scene: Scene) -> Lost:
+        if robot in self._departed:
+            return self._departed[robot]
+        leaders = self._leaders_at_goal(scene) or [reign.leader for reign in self._reigns[-1:]]
+        dropped = self._dropped(robot, leaders[0]) if leaders else None
+        return dropped or Lost(robot=robot, at_s=scene.time_ns / 1e9, why="did not arrive")
+
+    def _dropped(self, robot: int, leader: int) -> Lost | None:
+        """When the line of rosters that led to `leader` lost a robot for good, and by whom."""
+        dropped: Lost | None = None
+        for reign in self._reigns:
+            if leader not in reign.members:
+                continue
+            if robot in reign.members:
+                dropped = None
+            elif dropped is None:
+                why = f"dropped from the roster of robot {reign.leader}"
+                dropped = Lost(robot=robot, at_s=reign.at_s, why=why)
+        return dropped
+
+
+def _roster(status: Status) -> tuple[int, tuple[int, ...], Shape]:
+    return status.epoch, status.members, status.shape
+
+
+def _extent(status: Status, spacing: float) -> float:
+    """How far behind its leader the last slot of a formation may lie, and half a spacing more [m]."""
+    followers = len(status.members) - 1
+    ranks = followers if status.shape is Shape.COLUMN else (followers + 1) // 2
+    return (ranks + 0.5) * spacing

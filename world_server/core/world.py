@@ -1,0 +1,233 @@
+"""The world of one mission, tick by tick: who is where, what each sees, what is broken, how it ends.
+
+Every driver calls, in this order and once a tick: truth(), observe(), advance(). Faults, departures and
+returns take effect in the next truth(). The body of a robot whose process is gone stays where it was:
+others see it and can touch it, and a restarted process wakes up in it.
+"""
+
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
+from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.messages import (
+    Action,
+    Contact,
+    Departure,
+    Observation,
+    Offer,
+    Outcome,
+    Presence,
+    Truth,
+)
+from onehop.contracts.scenario import FaultSection, Scenario
+from onehop.contracts.team import Status
+from world_server.core.contacts import Touches
+from world_server.core.faults import Faults
+from world_server.core.laser import Laser
+from world_server.core.motion import Motion
+from world_server.core.placement import start_poses
+from world_server.core.referee import Referee, Scene
+from world_server.core.walls import WallMap
+
+KILLED = "killed (scenario)"
+RESTARTED = "restarted (scenario)"
+
+_AT_REST = (0.0, 0.0)
+"""v [m/s] and w [rad/s] of a robot that was told nothing, or is held."""
+
+
+class World:
+    """Ground truth of one mission. Raises ScenarioError when the team cannot start on this map."""
+
+    def __init__(self, scenario: Scenario, walls: WallMap) -> None:
+        self._robots = scenario.team.robots
+        self._row = {robot: row for row, robot in enumerate(self._robots)}
+        self._body = scenario.robot
+        self._period_ns = scenario.clock.period_ns
+        self._poses = start_poses(scenario, walls)
+        self._twists = np.zeros((len(self._robots), 2))
+        self._laser = Laser(walls, scenario.robot)
+        self._motion = Motion(walls, scenario.robot, self._period_ns)
+        self._touches = Touches(self._robots, self._motion, scenario.robot.radius)
+        self._faults = Faults(scenario.faults, self._robots)
+        self._referee = Referee(scenario)
+        self._incarnation = dict.fromkeys(self._robots, 0)
+        self._present = dict.fromkeys(self._robots, True)
+        self._statuses: dict[int, Status] = {}
+        self._offers: dict[int, Offer] = {}
+        self._departures: list[Departure] = []
+        self._contacts: tuple[Contact, ...] = ()
+        self._collisions = 0
+        self._outcome: Outcome | None = None
+        self.tick = 0
+        self._truth: Truth | None = None
+        self._present_now: tuple[Presence, ...] | None = None
+        self._begin_tick()
+
+    @property
+    def time_ns(self) -> int:
+        """Simulated time at the current tick [ns]."""
+        return self.tick * self._period_ns
+
+    def due_faults(self) -> tuple[FaultSection, ...]:
+        """Faults of the script that this tick's truth shows for the first time.
+
+        The world has already carried them out on itself; a driver with processes ends and starts those
+        that a kill or restart names before it lets this tick go on.
+        """
+        return self._due
+
+    def truth(self) -> Truth:
+        """Ground truth of this tick: the same value until advance()."""
+        if self._truth is None:
+            present, offers = self._presences(), self._offers
+            self._truth = Truth(
+                tick=self.tick,
+                time_ns=self.time_ns,
+                present=present,
+                offers=tuple([offers[one.robot] for one in present if one.robot in offers]),
+                cuts=self._faults.cuts,
+                jams=self._faults.jams,
+                contacts=self._contacts,
+                departures=tuple(sorted(self._departures, key=lambda gone: gone.robot)),
+            )
+            self._departures = []
+        return self._truth
+
+    def observe(self) -> dict[int, Observation]:
+        """What each robot that this tick's truth calls present sees now, by id, ids ascending."""
+        truth = self.truth()
+        tick, time_ns = truth.tick, truth.time_ns
+        looking = np.array([self._row[one.robot] for one in truth.present], dtype=np.int32)
+        scans = self._laser.scans(self._poses, looking)
+        scans.flags.writeable = False
+        return {
+            one.robot: Observation(tick, time_ns, one.incarnation, one.pose, one.twist, scan)
+            for one, scan in zip(truth.present, scans, strict=True)
+        }
+
+    def advance(self, actions: Mapping[int, Action]) -> None:
+        """Let one period pass. A present robot without an action stands still.
+
+        Actions of robots that are not present, or of an earlier incarnation, are ignored. Raises
+        ValueError for a twist that is not a number: a broken robot, not a state of the world.
+        """
+        self._take(actions)
+        touched = self._motion.advance(self._poses, self._twists)
+        self._contacts = self._touches.begun(self._poses, touched)
+        self._collisions += len(self._contacts)
+        self.tick += 1
+        self._begin_tick()
+        if self._outcome is None:
+            self._outcome = self._referee.judge(self._scene(), self._faults.will_restart)
+
+    def fence(self, robot: int, why: str) -> None:
+        """Take a robot out of the mission, as of the next truth(): its process died or fell silent."""
+        if self._present[robot]:
+            self._present[robot] = False
+            self._departures.append(Departure(robot, why))
+            self._forget(robot)
+            self._referee.on_departure(robot, why, self.time_ns)
+
+    def admit(self, robot: int) -> None:
+        """Let a robot take part again, as of the next truth(), where its body stands."""
+        if not self._present[robot]:
+            self._present[robot] = True
+            self._incarnation[robot] += 1
+            self._forget(robot)
+            self._referee.on_return(robot)
+
+    def inject(self, fault: FaultSection) -> None:
+        """Carry out a fault that is not in the script, as of the next truth(); its at_s is ignored."""
+        self._faults.begin(fault, self.time_ns)
+        self._present_now = None
+        self._strike(fault)
+
+    def outcome(self) -> Outcome | None:
+        """How the mission ended, or None while it goes on."""
+        return self._outcome
+
+    def aborted(self, reason: str) -> Outcome:
+        """The account of a mission that is broken off now."""
+        return self._referee.close("aborted", reason, self._scene())
+
+    def _begin_tick(self) -> None:
+        self._truth = self._present_now = None
+        self._faults.expire(self.time_ns)
+        self._due = self._faults.due(self.time_ns)
+        for fault in self._due:
+            self._strike(fault)
+
+    def _strike(self, fault: FaultSection) -> None:
+        """Carry out what of a fault concerns who is present."""
+        if fault.kind == "kill":
+            for robot in sorted(fault.robots):
+                self.fence(robot, KILLED)
+        elif fault.kind == "restart":
+            for robot in sorted(fault.robots):
+                self.fence(robot, RESTARTED)
+                self.admit(robot)
+
+    def _forget(self, robot: int) -> None:
+        """Drop what the last process of a robot said and did."""
+        self._present_now = None
+        self._twists[self._row[robot]] = 0.0
+        self._offers.pop(robot, None)
+        self._statuses.pop(robot, None)
+
+    def _take(self, actions: Mapping[int, Action]) -> None:
+        """Take over twists, offers and words of the robots that are present."""
+        self._offers = {}
+        held = self._faults.held
+        driven = [_AT_REST] * len(self._robots)
+        for robot, row in self._row.items():
+            action = actions.get(robot)
+            if (
+                action is None
+                or not self._present[robot]
+                or action.incarnation != self._incarnation[robot]
+            ):
+                continue
+            self._offers[robot] = Offer(robot, action.speed, action.remaining_distance, action.outbox)
+            self._statuses[robot] = action.status
+            if action.notes:
+                self._referee.on_notes(robot, action.notes)
+            if robot not in held:
+                driven[row] = self._driven(robot, action.twist)
+        self._twists[:] = driven
+
+    def _driven(self, robot: int, twist: Twist) -> tuple[float, float]:
+        """What the motors make of a command: no more than they can."""
+        v, w = twist.v, twist.w
+        if not (math.isfinite(v) and math.isfinite(w)):
+            raise ValueError(f"robot {robot} commands the twist ({v}, {w})")
+        speed, rate = self._body.max_speed, self._body.max_turn_rate
+        return max(-speed, min(speed, v)), max(-rate, min(rate, w))
+
+    def _presences(self) -> tuple[Presence, ...]:
+        """Who is present now, ids ascending; kept until somebody moves, leaves or returns."""
+        if self._present_now is None:
+            poses, twists = self._poses.tolist(), self._twists.tolist()
+            held, incarnation = self._faults.held, self._incarnation
+            self._present_now = tuple(
+                [
+                    Presence(
+                        robot, incarnation[robot], Pose(*poses[row]), Twist(*twists[row]), robot in held
+                    )
+                    for robot, row in self._row.items()
+                    if self._present[robot]
+                ]
+            )
+        return self._present_now
+
+    def _scene(self) -> Scene:
+        return Scene(
+            self.tick,
+            self.time_ns,
+            self._presences(),
+            self._statuses,
+            self._faults.released,
+            self._collisions,
+        )

@@ -1,0 +1,288 @@
+"""The shell of the world in lock-step: it holds the clock, and everyone else waits for its tick.
+
+For tick k it puts truth(k) and every obs(k), waits for out(k) of every robot that truth(k) called
+present, and lets the world advance. A robot whose token vanishes, who stays silent too long or puts
+something that is no action of this tick is fenced: truth(k+1) leaves it out. Without its radio or its
+recorder a mission has no meaning: it ends as aborted.
+"""
+
+import argparse
+import signal
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from onehop import scenario_file
+from onehop.contracts import topics
+from onehop.contracts.errors import DecodeError
+from onehop.contracts.messages import Action, End, Outcome, Progress, RobotProgress, Truth
+from onehop.contracts.scenario import RadioBriefing, robot_briefing
+from onehop.drive import node
+from onehop.drive.briefings import LogBriefing, radio_briefing
+from onehop.drive.bus import ALIVE, GONE, Bus, open_router
+from onehop.drive.codec import decode, encode
+from onehop.drive.journal import WireMessage
+from onehop.drive.record import pack_record
+from onehop.scenario_file import Bundle
+from world_server.core.mapfile import load_map
+from world_server.core.world import World
+
+RECORD_WINDOW = 5
+"""Ticks that the world may be ahead of the file: what a kill -9 of the recorder can cost at most."""
+
+PROGRESS_S = 0.2
+FAREWELL_S = 30.0
+START_S = 30.0
+RESTART_S = 20.0
+
+
+def main() -> int:
+    options = _options()
+    node.start(options)
+    bundle = scenario_file.load(
+        options.scenario,
+        options.set,
+        options.seed,
+        options.map,
+        scenario_file.point(options.start, "--start"),
+        scenario_file.point(options.goal, "--goal"),
+    )
+    walls = load_map(bundle.scenario.map, bundle.files)
+    with scenario_file.in_file(options.scenario):
+        world = World(bundle.scenario, walls)
+    world.observe()  # compiles or loads the laser kernel before anyone waits for it
+    with open_router(options.mission, options.listen, node.credentials()) as bus:
+        return _Host(bus, bundle, world, radio_briefing(bundle.scenario, walls), options.driver).serve()
+
+
+def _options() -> argparse.Namespace:
+    parser = node.arguments("world_server", "Map, motion and clock of a mission; its bus router.")
+    parser.add_argument("scenario", type=Path, help="scenario file (.toml)")
+    parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a key")
+    parser.add_argument("--seed", type=int)
+    parser.add_argument("--map", type=Path)
+    parser.add_argument("--start", metavar="X,Y")
+    parser.add_argument("--goal", metavar="X,Y")
+    parser.add_argument("--listen", required=True, metavar="ENDPOINT", help="e.g. tcp/127.0.0.1:7447")
+    parser.add_argument("--driver", default="processes", help="what the log calls this way of running")
+    return parser.parse_args()
+
+
+@dataclass
+class _InterruptedError(Exception):
+    reason: str
+
+
+class _Host:
+    """One mission as the world runs it."""
+
+    def __init__(
+        self, bus: Bus, bundle: Bundle, world: World, radio: RadioBriefing, driver: str
+    ) -> None:
+        self._bus = bus
+        self._scenario = bundle.scenario
+        self._world = world
+        robots = self._scenario.team.robots
+        self._incarnations = dict.fromkeys(robots, 0)
+        self._names = {topics.alive(topics.robot_name(i)): i for i in robots}
+        self._alive: set[str] = set()
+        self._recorded = -1
+        self._actions: dict[int, tuple[Action, bytes]] = {}
+        self._awaited: set[int] = set()
+        self._fenced: dict[int, str] = {}
+        self._stop: str | None = None
+        self._restarting = 0
+        self._next_progress = 0.0
+        self._briefings = {
+            topics.config(topics.RADIO): encode(radio),
+            topics.config(topics.RECORDER): encode(
+                LogBriefing(driver, bundle.scenario_json(), tuple(sorted(bundle.files.items())))
+            ),
+        }
+        self._put_truth = bus.publisher(topics.TRUTH)
+        self._put_obs = {i: bus.publisher(topics.obs(i)) for i in robots}
+        self._put_fate = {i: bus.publisher(topics.fate(i)) for i in robots}
+        self._put_record = bus.publisher(topics.record(topics.WORLD), express=False)
+        self._put_progress = bus.publisher(topics.PROGRESS, express=False)
+        self._put_restart = bus.publisher(topics.RESTART)
+        self._put_end = bus.publisher(topics.END)
+
+    def serve(self) -> int:
+        """Run the mission from the first process's arrival to the last one's farewell."""
+        signal.signal(signal.SIGTERM, self._on_sigterm)
+        bus = self._bus
+        bus.subscribe(topics.out("*"))
+        bus.subscribe(topics.RECORDED)
+        bus.subscribe(topics.CONTROL)
+        bus.watch(topics.alive("*"))
+        bus.answer(topics.config("*"), self._brief)
+        bus.announce(topics.WORLD)
+        started = time.monotonic()
+        try:
+            self._await_everyone()
+            node.calm_garbage_collector()
+            started = time.monotonic()
+            outcome = self._run()
+        except _InterruptedError as interruption:
+            outcome = self._world.aborted(interruption.reason)
+        wall_s = time.monotonic() - started
+        self._put_end(encode(End(outcome, self._world.tick, wall_s)))
+        self._await_farewell()
+        return 0
+
+    def _on_sigterm(self, *_: object) -> None:
+        self._bus.inbox.put((topics.CONTROL, b"stop"))
+
+    def _brief(self, key: str) -> bytes | None:
+        """The answer to a process that asks for its briefing."""
+        name = key.removeprefix(topics.config(""))
+        robot = self._names.get(topics.alive(name))
+        if robot is None:
+            return self._briefings.get(key)
+        return encode(robot_briefing(self._scenario, robot, self._incarnations[robot]))
+
+    def _await_everyone(self) -> None:
+        wanted = {*self._names, topics.alive(topics.RADIO), topics.alive(topics.RECORDER)}
+        deadline = time.monotonic() + START_S
+        while missing := wanted - self._alive:
+            self._hear(deadline)
+            if time.monotonic() > deadline:
+                names = ", ".join(sorted(key.removeprefix(topics.alive("")) for key in missing))
+                raise _InterruptedError(f"not started within {START_S:.0f} s: {names}")
+
+    def _run(self) -> Outcome:
+        outcome = None
+        while outcome is None:
+            outcome = self._tick()
+        return outcome
+
+    def _tick(self) -> Outcome | None:
+        world = self._world
+        truth = world.truth()
+        self._carry_out_faults(truth)
+        encoded_truth = encode(truth)
+        self._put_truth(encoded_truth)
+        record: list[WireMessage] = [(topics.TRUTH, encoded_truth)]
+        for i, observation in world.observe().items():
+            encoded = encode(observation)
+            self._put_obs[i](encoded)
+            record.append((topics.obs(i), encoded))
+        self._collect(truth)
+        record += [(topics.out(i), self._actions[i][1]) for i in sorted(self._actions)]
+        self._put_record(pack_record(truth.tick, record))
+        world.advance({i: self._actions[i][0] for i in sorted(self._actions)})
+        for i in sorted(self._fenced):
+            world.fence(i, self._fenced[i])
+        self._fenced.clear()
+        self._report_progress(truth)
+        return world.outcome()
+
+    def _collect(self, truth: Truth) -> None:
+        """Wait for the action of every present robot; fence those who cannot give it."""
+        self._actions.clear()
+        self._awaited = {presence.robot for presence in truth.present}
+        for i in sorted(self._awaited):
+            if topics.alive(topics.robot_name(i)) not in self._alive:
+                self._fence(i, "its process died")
+        deadline = time.monotonic() + self._scenario.clock.silence_s
+        while self._awaited or truth.tick - self._recorded > RECORD_WINDOW:
+            if self._stop:
+                raise _InterruptedError(self._stop)
+            self._hear(deadline)
+            if time.monotonic() > deadline:
+                if not self._awaited:
+                    raise _InterruptedError("the recorder does not keep up")
+                for i in sorted(self._awaited):
+                    self._fence(i, f"silent for {self._scenario.clock.silence_s:g} s")
+
+    def _hear(self, deadline: float) -> None:
+        """Take in one message, waiting for it until the deadline at most."""
+        received = self._bus.receive(max(0.0, deadline - time.monotonic()))
+        if received is None:
+            return
+        key, data = received
+        if key == topics.RECORDED:
+            self._recorded = int.from_bytes(data, "little")
+        elif key == topics.CONTROL:
+            self._stop = "stopped by the operator"
+        elif data is ALIVE:
+            self._alive.add(key)
+        elif data is GONE:
+            self._on_gone(key)
+        elif key.startswith(topics.out("")):
+            self._on_action(int(key.removeprefix(topics.out(""))), data)
+
+    def _on_gone(self, key: str) -> None:
+        self._alive.discard(key)
+        robot = self._names.get(key)
+        if robot is not None:
+            if robot != self._restarting:
+                self._fence(robot, "its process died")
+        elif key in (topics.alive(topics.RADIO), topics.alive(topics.RECORDER)):
+            self._stop = f"the {key.removeprefix(topics.alive(''))} process died"
+
+    def _on_action(self, robot: int, data: bytes) -> None:
+        if robot not in self._awaited:
+            return
+        try:
+            action = decode(Action, data)
+        except DecodeError as error:
+            self._fence(robot, f"put no action: {error}")
+            return
+        if (action.tick, action.incarnation) != (self._world.tick, self._incarnations[robot]):
+            return
+        self._awaited.discard(robot)
+        self._actions[robot] = action, data
+
+    def _fence(self, robot: int, why: str) -> None:
+        """Leave a robot out from the next tick on; an action that it gave for this one still counts."""
+        self._awaited.discard(robot)
+        self._fenced.setdefault(robot, why)
+
+    def _carry_out_faults(self, truth: Truth) -> None:
+        """End the processes of those who departed, start those anew that the script restarts.
+
+        The world holds its tick meanwhile, so a run with kills and restarts is as reproducible as one
+        without.
+        """
+        present = {presence.robot for presence in truth.present}
+        for departure in truth.departures:
+            if departure.robot not in present:
+                self._put_fate[departure.robot](b"")
+        for fault in self._world.due_faults():
+            if fault.kind == "restart":
+                for i in sorted(fault.robots):
+                    self._restart(i)
+
+    def _restart(self, robot: int) -> None:
+        key = topics.alive(topics.robot_name(robot))
+        self._incarnations[robot] += 1
+        self._put_fate[robot](b"")
+        self._restarting = robot
+        deadline = time.monotonic() + RESTART_S
+        while key in self._alive and time.monotonic() < deadline:
+            self._hear(deadline)
+        self._put_restart(str(robot).encode())
+        while key not in self._alive:
+            self._hear(deadline)
+            if time.monotonic() > deadline:
+                raise _InterruptedError(f"robot {robot} was not started again within {RESTART_S:.0f} s")
+        self._restarting = 0
+
+    def _report_progress(self, truth: Truth) -> None:
+        now = time.monotonic()
+        if now < self._next_progress:
+            return
+        self._next_progress = now + PROGRESS_S
+        lines = tuple(
+            RobotProgress(i, action.twist.v, action.status)
+            for i, (action, _) in sorted(self._actions.items())
+        )
+        self._put_progress(encode(Progress(truth.tick, truth.time_ns, lines)))
+
+    def _await_farewell(self) -> None:
+        """Stay, as the router of the bus, until everyone who was told of the end has left."""
+        deadline = time.monotonic() + FAREWELL_S
+        staying = {*self._names, topics.alive(topics.RADIO), topics.alive(topics.RECORDER)}
+        while self._alive & staying and time.monotonic() < deadline:
+            self._hear(deadline)
