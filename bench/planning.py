@@ -123,7 +123,9 @@ def ompl_prm(rounds: int) -> dict[str, float] | str:
         planner = geometric.PRM(information)
         planner.setProblemDefinition(problem)
         planner.setup()
-        enough = base.PlannerTerminationCondition(lambda planner=planner: planner.milestoneCount() >= 200)
+        enough = base.PlannerTerminationCondition(
+            lambda planner=planner: planner.milestoneCount() >= 200
+        )
         planner.growRoadmapPtc(enough)
         planner.solve(base.timedPlannerTerminationCondition(1.0))
         took.append((time.perf_counter() - began) * 1e3)
@@ -168,9 +170,13 @@ def read_map(path: Path) -> tuple[Scenario, WallMap]:
     else:
         section = MapSection(file=str(path))
         files = {str(path): path.read_bytes()}
-        files |= {name: (path.parent / name).read_bytes() for name in map_files(str(path), files[str(path)])}
+        files |= {
+            name: (path.parent / name).read_bytes() for name in map_files(str(path), files[str(path)])
+        }
         walls = load_map(section, files)
-    return Scenario(name=path.stem, goal=GoalSection(0, 0), map=section, planner=planner, robot=body), walls
+    return Scenario(
+        name=path.stem, goal=GoalSection(0, 0), map=section, planner=planner, robot=body
+    ), walls
 
 
 def campaign(path: Path, count: int) -> dict[str, object]:
@@ -191,9 +197,7 @@ def campaign(path: Path, count: int) -> dict[str, object]:
             continue
         pairs += 1
         shortest = way_length(way)
-        bug = tangent_bug(
-            known.free, c0, r0, c1, r1, scenario.robot.laser_range / known.cell, AROUND
-        )
+        bug = tangent_bug(known.free, c0, r0, c1, r1, scenario.robot.laser_range / known.cell, AROUND)
         tangent.append(bug * known.cell / shortest if bug > 0 else math.inf)
         outcome = solo(
             replace(

@@ -27,7 +27,13 @@ def _look(free: BoolArray, x: float, y: float, reach: float) -> FloatArray:
         distance = 0.0
         while distance < reach:
             column, row = round(x + c * (distance + 0.5)), round(y + s * (distance + 0.5))
-            if row < 0 or column < 0 or row >= rows or column >= columns or not free[int(row), int(column)]:
+            if (
+                row < 0
+                or column < 0
+                or row >= rows
+                or column >= columns
+                or not free[int(row), int(column)]
+            ):
                 break
             distance += 0.5
         sight[ray] = min(distance, reach)
@@ -39,13 +45,15 @@ def _straight(free: BoolArray, x0: float, y0: float, x1: float, y1: float) -> bo
     count = int(2 * max(abs(x1 - x0), abs(y1 - y0))) + 1
     for i in range(count + 1):
         x, y = x0 + (x1 - x0) * i / count, y0 + (y1 - y0) * i / count
-        if not free[int(round(y)), int(round(x))]:
+        if not free[round(y), round(x)]:
             return False
     return True
 
 
 @numba.njit(cache=True)
-def _best_end(sight: FloatArray, x: float, y: float, gx: float, gy: float, reach: float) -> tuple[int, float]:
+def _best_end(
+    sight: FloatArray, x: float, y: float, gx: float, gy: float, reach: float
+) -> tuple[int, float]:
     """The ray whose end makes the way over it shortest (a node of the local tangent graph), and that
     end's distance to the goal.
     """
@@ -53,7 +61,9 @@ def _best_end(sight: FloatArray, x: float, y: float, gx: float, gy: float, reach
     for ray in range(RAYS):
         edge = sight[ray] >= reach - 0.5
         for other in (ray - 1, ray + 1):
-            edge = edge or sight[other % RAYS] > sight[ray] + 3.0 or sight[ray] > sight[other % RAYS] + 3.0
+            edge = (
+                edge or sight[other % RAYS] > sight[ray] + 3.0 or sight[ray] > sight[other % RAYS] + 3.0
+            )
         if not edge or sight[ray] < 1.0:
             continue
         angle = 2 * math.pi * ray / RAYS
@@ -69,7 +79,8 @@ def _nearest_seen(sight: FloatArray, x: float, y: float, gx: float, gy: float) -
     for ray in range(RAYS):
         angle = 2 * math.pi * ray / RAYS
         least = min(
-            least, math.hypot(x + sight[ray] * math.cos(angle) - gx, y + sight[ray] * math.sin(angle) - gy)
+            least,
+            math.hypot(x + sight[ray] * math.cos(angle) - gx, y + sight[ray] * math.sin(angle) - gy),
         )
     return least
 
@@ -96,8 +107,8 @@ def tangent_bug(
         followed = min(here, _nearest_seen(sight, x, y, gx, gy))
         cross = math.cos(angle) * (gy - y) - math.sin(angle) * (gx - x)
         side = -1 if cross > 0 else 1
-        column, row = int(round(x)), int(round(y))
-        heading = int(round(math.atan2(gy - y, gx - x) / (math.pi / 4))) % 8
+        column, row = round(x), round(y)
+        heading = round(math.atan2(gy - y, gx - x) / (math.pi / 4)) % 8
         while free[row + around[heading, 1], column + around[heading, 0]]:
             column, row = column + around[heading, 0], row + around[heading, 1]
             length += math.hypot(around[heading, 0], around[heading, 1])
