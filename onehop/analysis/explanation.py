@@ -1,7 +1,7 @@
 """Why one robot did what it did at one moment, from the log alone.
 
-Its own words (status and notes), the messages that it was sent and what became of them, and the faults in
-force around it. Nothing is simulated.
+Its own words (status and notes), the messages that it was sent and what became of them, and the faults
+in force around it. Nothing is simulated.
 """
 
 import math

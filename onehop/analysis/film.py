@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends import backend_agg
 from matplotlib.collections import LineCollection, PathCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -55,7 +55,9 @@ def _write_gif(log: Log, path: Path) -> None:
     frames = (Image.fromarray(pixels) for pixels in _Stage(log).frames(GIF_EVERY))
     first = next(frames)
     palette = _with_swatches(first, log.robots).quantize(colors=255)
-    pages = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in chain((first,), frames))
+    pages = (
+        frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in chain((first,), frames)
+    )
     next(pages).save(
         path, save_all=True, append_images=pages, duration=1000 * GIF_EVERY // FRAMES_PER_S, loop=0
     )
@@ -104,7 +106,8 @@ class _Stage:
         figure = Figure(figsize=(7.2, 7.2), dpi=100)
         self._axes = figure.add_axes((0.085, 0.065, 0.90, 0.90))
         draw_ground(self._axes, log.bundle)
-        self._canvas: Any = FigureCanvasAgg(figure)
+        canvas: Any = backend_agg.FigureCanvasAgg(figure)
+        self._canvas = canvas
         self._canvas.draw()
         self._still = self._canvas.copy_from_bbox(figure.bbox)
         width, height = self._canvas.get_width_height()
@@ -116,7 +119,8 @@ class _Stage:
         colours = [self._colours[robot] for robot in self._log.robots]
         axes: Any = self._axes
         self._trails = [
-            Line2D([], [], color=colour, linewidth=1.3, alpha=_TRAIL_ALPHA, zorder=3) for colour in colours
+            Line2D([], [], color=colour, linewidth=1.3, alpha=_TRAIL_ALPHA, zorder=3)
+            for colour in colours
         ]
         self._links = LineCollection([], colors=INK, linewidths=0.7, alpha=0.6, zorder=4)
         self._bodies: PathCollection = axes.scatter(

@@ -1,4 +1,4 @@
-"""Every message between robots with its whole story: what was said, by whom, to whom, and what became of it.
+"""Every message between robots with its whole story: who said what to whom, and what became of it.
 
 The radio's verdicts know no payloads and the offers know no fate; a message's number (the how-many-th of
 its source, as radio_proxy counts) joins the two.

@@ -59,7 +59,7 @@ def one_of(*keys: str) -> Wanted:
 
 
 def walk(stream: BufferedReader) -> Iterator[tuple[int, int]]:
-    """(opcode, length) of every whole record, the stream at the start of its content; stops at a tear."""
+    """(opcode, length) of every whole record, the stream at its content; stops where the log is torn."""
     end = stream.seek(0, 2)
     at = _MAGIC
     while at + _RECORD.size <= end:

@@ -28,8 +28,8 @@ class KnownMap:
         xmin, ymin, xmax, ymax = walls.bounds
         self.cell, self.origin = cell, (xmin, ymin)
         columns, rows = math.ceil((xmax - xmin) / cell), math.ceil((ymax - ymin) / cell)
-        self.x = xmin + (np.arange(columns) + 0.5) * cell
-        self.y = ymin + (np.arange(rows) + 0.5) * cell
+        self.x: FloatArray = xmin + (np.arange(columns, dtype=np.float64) + 0.5) * cell
+        self.y: FloatArray = ymin + (np.arange(rows, dtype=np.float64) + 0.5) * cell
         blocked = np.zeros((rows, columns), dtype=np.bool_)
         for segment in walls.segments:
             _mark(blocked, segment, self.x, self.y, radius)

@@ -83,7 +83,7 @@ def _gain(one: Explanation) -> Iterator[str]:
         yield "leader   never heard a command of this leader"
     else:
         yield (
-            f"leader   last command arrived at {one.next_s:.3f} s, {one.at_s - one.next_s:.2f} s before; "
+            f"leader   last command at {one.next_s:.3f} s, {one.at_s - one.next_s:.2f} s before; "
             f"one is due every {one.team.next_period:g} s, patience {one.team.leader_timeout:g} s"
         )
 

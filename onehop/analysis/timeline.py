@@ -1,4 +1,4 @@
-"""What happened to whom and when: presence, reigns, modes, faults. Read from tables, for figures and text."""
+"""What happened to whom and when: presence, reigns, modes, faults. From tables, for figures and text."""
 
 from dataclasses import dataclass
 

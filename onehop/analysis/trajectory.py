@@ -212,7 +212,9 @@ def _legend(log: Log, gone: list[Departure], colours: dict[int, str]) -> list[Li
             [],
             [],
             linestyle="none",
-            marker="x", markersize=5, color=BAD,
+            marker="x",
+            markersize=5,
+            color=BAD,
             label=f"{f.at_s:g} s: {describe_fault(f)}",
         )
         for f in log.scenario.faults

@@ -59,6 +59,7 @@ class Saturation:
         seed: int,
         retry_limit: int,
         fade_per_exchange: bool = False,
+        take_shortcuts: bool = True,
     ) -> None:
         robots = tuple(range(1, len(load.places) + 1))
         place = Field(budget, robots, ())
@@ -80,6 +81,7 @@ class Saturation:
             queue_frames=2,
             rts_threshold_bytes=0 if load.rts_cts else load.msdu_bytes,
             fade_per_exchange=fade_per_exchange,
+            take_shortcuts=take_shortcuts,
         )
         for sender in range(len(load.receivers)):
             self._refill(sender, 0)

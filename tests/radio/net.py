@@ -74,6 +74,7 @@ class Net:
         self.speed = 0.0
         self.remaining = 0.0
         self.loss: Callable[[int, int], bool] = lambda _sender, _receiver: False
+        self.watch: Callable[[], None] = lambda: None
         self.links = {frozenset(link) for link in links}
         self.sent: list[Sent] = []
         self.delivered: list[tuple[int, Data]] = []
@@ -121,6 +122,7 @@ class Net:
         while self._events and self._events[0][0] <= until:
             self.now, _, event, argument = heapq.heappop(self._events)
             event(argument, self.now)
+            self.watch()
         self.now = until
 
     def put(self, host: Host, packet: object, target: int, size_bytes: int, now: int) -> None:

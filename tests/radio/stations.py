@@ -1,6 +1,15 @@
 """Saturated stations for the tests: Bianchi's own timing, and runs of the event engine."""
 
-from radio_proxy.core.airtime import Timing
+from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.messages import Cut, Presence
+from onehop.contracts.randomness import generator
+from onehop.contracts.scenario import RadioSection
+from radio_proxy.core.airtime import Timing, dsss
+from radio_proxy.core.contention import Frame
+from radio_proxy.core.dcf import Dcf
+from radio_proxy.core.draws import Draws
+from radio_proxy.core.medium import Emission, Medium
+from radio_proxy.core.propagation import Field, link_budget
 
 
 def fhss(window: int, stages: int) -> Timing:
@@ -19,3 +28,61 @@ def fhss(window: int, stages: int) -> Timing:
         cw_min=window - 1,
         cw_max=(window << stages) - 1,
     )
+
+
+class Cell:
+    """Stations at given places on the event engine, whose frames are handed over at given times."""
+
+    def __init__(
+        self, places: list[tuple[float, float]], section: RadioSection, cuts: tuple[Cut, ...] = ()
+    ) -> None:
+        robots = tuple(range(1, len(places) + 1))
+        place = Field(link_budget(section), robots, ())
+        still = Twist(0.0, 0.0)
+        presences = [
+            Presence(r, 0, Pose(x, y, 0.0), still, False)
+            for r, (x, y) in zip(robots, places, strict=True)
+        ]
+        place.update(tuple(presences), cuts, ())
+        draws = Draws(generator(1, "radio"))
+        self.dcf = Dcf(
+            len(robots),
+            dsss(section),
+            Medium(place, draws),
+            draws,
+            self,
+            retry_limit=section.retry_limit,
+            queue_frames=section.queue_frames,
+            rts_threshold_bytes=section.rts_threshold_bytes,
+            fade_per_exchange=False,
+        )
+        self.arrived: list[tuple[int, int, Frame]] = []
+        self.given_up: list[Frame] = []
+
+    def send_at(self, time_us: float, sender: int, receiver: int, msdu_bytes: int = 800) -> Frame:
+        """Hand a frame over at that time."""
+        frame = Frame(receiver, msdu_bytes, None)
+
+        def hand_over(_: object, now: int) -> None:
+            self.dcf.enqueue(sender, frame, now, False)
+
+        self.dcf.at(round(time_us * 1000), hand_over, None)
+        return frame
+
+    def run(self, until_us: float) -> None:
+        self.dcf.run(round(until_us * 1000))
+
+    def on_service(self, sender: int, frame: Frame, now: int) -> None:
+        """Nothing to note."""
+
+    def on_received(self, receiver: int, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
+        self.arrived.append((now, sender, frame))
+
+    def on_broadcast_done(self, sender: int, frame: Frame, emission: Emission, now: int) -> None:  # noqa: ARG002
+        self.arrived.append((now, sender, frame))
+
+    def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:
+        """Nothing to note."""
+
+    def on_undeliverable(self, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
+        self.given_up.append(frame)

@@ -242,6 +242,23 @@ def test_a_broken_link_kills_every_route_over_it_one_number_newer() -> None:
     assert [entry.sequence for d in (5, 6, 7) if (entry := table.entry(d, 0))] == [11, 11, 10]
 
 
+def test_a_stale_route_through_the_asker_does_not_answer() -> None:
+    """6.11: the number that a break adds keeps the asker from being sent back to itself."""
+    net = chain("mrdv", 3)
+    net.offer(1, 3)
+    net.run(500 * MS)
+    net.links.remove(frozenset((2, 3)))
+    net.loss = lambda sender, receiver: (sender, receiver) == (2, 1)
+    net.offer(2, 3)
+    net.run(20 * MS)
+    assert router(net, 2).table.usable(3, net.now) is None
+    net.loss = lambda _sender, _receiver: False
+    net.run(2_000 * MS)
+    still = router(net, 1).table.usable(3, net.now)
+    assert still is None or still.next_hop == 2
+    assert router(net, 2).table.usable(3, net.now) is None
+
+
 @pytest.mark.parametrize(("precursors", "target"), [((8,), 8), ((8, 9), BROADCAST)])
 def test_precursors_are_told(precursors: tuple[int, ...], target: int) -> None:
     """6.11: unicast to a single precursor, broadcast to several, none without."""

@@ -151,6 +151,15 @@ def test_the_send_buffer_is_bounded_and_drops_the_newest() -> None:
     assert len(net.lost) == SEND_BUFFER + 1
 
 
+def test_messages_wait_for_the_route_and_keep_their_order() -> None:
+    """4.2 and 8.2.6: one reply sends everything that waits for its target."""
+    net = chain("mrsr", 3)
+    offered = [net.offer(1, 3) for _ in range(5)]
+    net.run(1_000 * MS)
+    assert [arrived.message for _, arrived in net.delivered] == offered
+    assert all(0 < message.discovery < 100 * MS for message in offered)
+
+
 def test_no_request_while_a_route_lives() -> None:
     net = chain("mrsr", 3)
     net.offer(1, 3)

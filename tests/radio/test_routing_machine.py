@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from hypothesis import HealthCheck, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import (
     RuleBasedStateMachine,
@@ -37,6 +37,11 @@ class RoutingMachine(RuleBasedStateMachine):
         self.net.dice = random.Random(seed)
         self.incarnations = dict.fromkeys(range(1, ROBOTS + 1), 0)
         self.offered = 0
+        self.net.watch = self.routes_are_free_of_loops
+
+    def routes_are_free_of_loops(self) -> None:
+        """Called after every single event."""
+        raise NotImplementedError
 
     @rule(source=robots, destination=robots, count=st.integers(1, 4))
     def offer(self, source: int, destination: int, count: int) -> None:
@@ -45,7 +50,13 @@ class RoutingMachine(RuleBasedStateMachine):
                 self.net.offer(source, destination)
                 self.offered += 1
 
-    @rule(duration=st.sampled_from([1, 3, 8, 40, 300, 2500, 16000]))
+    @rule(seed=st.integers(0, 1000))
+    def everybody_talks(self, seed: int) -> None:
+        dice = random.Random(seed)
+        for source in sorted(self.net.hosts):
+            self.offer(source, dice.randint(1, ROBOTS), 1)
+
+    @rule(duration=st.sampled_from([1, 3, 8, 40, 300, 300, 2500, 16000]))
     def wait(self, duration: int) -> None:
         self.net.run(duration * MS)
 
@@ -112,7 +123,6 @@ class MrdvMachine(RoutingMachine):
 
     protocol = "mrdv"
 
-    @invariant()
     def routes_are_free_of_loops(self) -> None:
         for destination in range(1, ROBOTS + 1):
             for start in sorted(self.net.hosts):
@@ -139,7 +149,6 @@ class MrsrMachine(RoutingMachine):
 
     protocol = "mrsr"
 
-    @invariant()
     def routes_are_free_of_loops(self) -> None:
         for robot, host in self.net.hosts.items():
             assert isinstance(host.router, MrsrRouter)
@@ -172,6 +181,29 @@ def explore(machine: type[RoutingMachine], examples: int) -> None:
 @pytest.mark.parametrize("machine", [MrdvMachine, MrsrMachine])
 def test_routing_holds_on_changing_nets(machine: type[RoutingMachine]) -> None:
     explore(machine, 15)
+
+
+@pytest.mark.parametrize("protocol", ["mrdv", "mrsr"])
+@given(
+    parents=st.lists(st.integers(0, 100), min_size=1, max_size=ROBOTS - 1),
+    extra=st.sets(st.sampled_from(PAIRS), max_size=3),
+    flows=st.lists(st.tuples(robots, robots), min_size=1, max_size=12),
+)
+def test_everything_arrives_on_a_net_that_holds_together(
+    protocol: str, parents: list[int], extra: set[tuple[int, int]], flows: list[tuple[int, int]]
+) -> None:
+    """A random connected net without losses, and messages from anyone to anyone."""
+    count = len(parents) + 1
+    tree = [(1 + parent % child, child + 1) for child, parent in enumerate(parents, 1)]
+    net = Net(protocol, range(1, count + 1), [*tree, *(pair for pair in extra if max(pair) <= count)])
+    for source, destination in flows:
+        if source != destination and max(source, destination) <= count:
+            net.offer(source, destination)
+            net.offer(source, destination)
+    net.run(QUIET_NS)
+    assert not net.lost
+    assert all(message.settled for message in net.messages)
+    assert all(message.discovery < 2_000 * MS for message in net.messages)
 
 
 @pytest.mark.slow

@@ -29,7 +29,7 @@ def oracle(segments: FloatArray, discs: FloatArray, pose: FloatArray, body: Robo
     angles = pose[2] + np.linspace(-half, half, body.laser_beams)
     ray = np.column_stack((np.cos(angles), np.sin(angles)))
     start, run = segments[:, :2] - pose[:2], segments[:, 2:] - segments[:, :2]
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(all="ignore"):
         turn = ray[:, None, 0] * run[None, :, 1] - ray[:, None, 1] * run[None, :, 0]
         reach = (start[:, 0] * run[:, 1] - start[:, 1] * run[:, 0])[None, :] / turn
         along = (start[None, :, 0] * ray[:, None, 1] - start[None, :, 1] * ray[:, None, 0]) / turn

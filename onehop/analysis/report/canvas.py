@@ -49,7 +49,7 @@ def save(figure: Figure, folder: Path, stem: str) -> Path:
 
 
 def mark_turns(axes: Axes, material: Material, named: bool = False) -> None:
-    """Vertical lines where robots left and where the lead passed on, and grey where a fault was in force."""
+    """Lines where robots left and where the lead passed on, and red shade while a fault was in force."""
     for span in material.faults:
         axes.axvspan(span.start_s, span.end_s, color="#F3E3E3", linewidth=0, zorder=0)
     for one in material.gone:

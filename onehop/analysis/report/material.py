@@ -10,7 +10,8 @@ from onehop.analysis.timeline import Departure, Span, departures, fault_spans, r
 from onehop.contracts.messages import Reign
 
 _TABLES = (
-    "poses", "status", "notes", "verdicts", "offers", "control", "contacts", "departures", "cuts", "jams",
+    "poses", "status", "notes", "verdicts", "offers", "control", "contacts", "departures", "cuts",
+    "jams",
 )  # fmt: skip
 
 

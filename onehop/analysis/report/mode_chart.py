@@ -1,4 +1,4 @@
-"""The timeline: who led whom in which shape, what every robot was doing, and which faults were in force."""
+"""The timeline: who led in which shape, what every robot was doing, which faults were in force."""
 
 import numpy as np
 from matplotlib.axes import Axes

@@ -1,4 +1,4 @@
-"""The report: figures as PNG and SVG, and one page with everything in it that opens without a network."""
+"""The report: figures as PNG and SVG, and one page with all of it that opens without a network."""
 
 import base64
 import html
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from onehop.analysis.log import Log
-from onehop.analysis.palette import BAD, GOOD, INK
+from onehop.analysis.palette import BAD, GOOD
 from onehop.analysis.report.canvas import save, styled
 from onehop.analysis.report.follower_chart import follower_chart
 from onehop.analysis.report.material import Material, gather
@@ -21,30 +21,16 @@ from onehop.analysis.report.story import Event, story, summary_sentence
 from onehop.analysis.trajectory import figure_of
 from onehop.drive.codec import as_map
 
-_CSS = f"""
-body {{ font: 15px/1.5 system-ui, sans-serif; color: {INK}; max-width: 1080px; margin: 2em auto; padding: 0 1em; }}
-h1 {{ margin-bottom: 0.1em; }} h2 {{ margin-top: 2.2em; border-bottom: 1px solid #ddd; }}
-.outcome {{ display: inline-block; color: white; border-radius: 4px; padding: 0.05em 0.6em; }}
-.lead {{ font-size: 1.12em; }} .note {{ color: #666; }}
-img {{ max-width: 100%; height: auto; }}
-table {{ border-collapse: collapse; margin: 0.6em 0; }}
-th, td {{ padding: 0.25em 0.8em; text-align: right; border-bottom: 1px solid #eee; vertical-align: top; }}
-th {{ border-bottom: 2px solid #ccc; }} th.text, td.text {{ text-align: left; }}
-td.time, td.name {{ white-space: nowrap; }} td.time {{ color: #666; }}
-dt {{ font-weight: 600; }} dd {{ margin: 0 0 0.4em 1.5em; }} tr.turn td {{ font-weight: 600; }}
-tr.dead td {{ color: #888; }} .chip {{ display: inline-block; width: 0.85em; height: 0.85em; border-radius: 50%; margin-right: 0.45em; vertical-align: -0.08em; }}
-pre {{ background: #f6f5f2; padding: 1em; overflow-x: auto; font-size: 12px; }}
-"""  # noqa: E501 - one rule a line is easier to read
-
+_CSS = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
 
 _WORDS = {
-    "Next": "The leader's command to each follower, every few seconds: where it is, who belongs to the team, "
-    "which shape. A follower computes its slot from it, and measures the throughput of the link on it.",
+    "Next": "The leader's command to each follower, every few seconds: where it is, who belongs to the "
+    "team, which shape. A follower computes its slot from it and measures the link's throughput on it.",
     "Ack": "A follower's answer. A leader that misses several gives the follower up (Lost_Follower).",
     "Beacon, Join": "A leader's word to everyone in range, and a robot's request to be taken in.",
     "slot": "A robot's place in the formation, relative to the leader.",
-    "k_rho": "How strongly a follower drives towards its slot. Below the threshold of throughput it is high: "
-    "the robot hurries before it loses its leader.",
+    "k_rho": "How strongly a follower drives towards its slot. Below the threshold of throughput it is "
+    "high: the robot hurries before it loses its leader.",
     "epoch": "Number of a roster. The higher one is obeyed when two differ.",
     "border following": "A robot goes around an obstacle that lies between it and its slot.",
 }
@@ -71,27 +57,28 @@ def write_report(log: Log, folder: Path) -> Path:
 def _pictures(material: Material, folder: Path) -> Iterator[_Picture]:
     yield _Picture(
         "Who did what when",
-        "The upper rows say who led, in which shape, and which faults were in force. Below, every robot in "
-        "its own colour: the deeper, the more it had to do by itself.",
+        "The upper rows say who led, in which shape, and which faults were in force. Below, every "
+        "robot in its own colour: the deeper, the more it had to do by itself.",
         save(mode_chart(material), folder, "timeline"),
     )
     yield _Picture(
         "Where",
-        "Paths from ground truth. Every 20 s the formation is drawn; a thin line joins each follower to the "
-        "leader that it obeys.",
+        "Paths from ground truth. Every 20 s the formation is drawn; a thin line joins each follower "
+        "to the leader that it obeys.",
         save(figure_of(material.log, material.tables), folder, "trajectory"),
     )
     for number, (before, after) in enumerate(elections(material)[:MAX_CHARTS], start=1):
         yield _Picture(
             f"How robot {after.leader} came to lead at {after.at_s:.1f} s",
-            "Time runs downwards, one line a robot; an arrow is a message in its sender's colour, a broken red "
-            "one a message that was lost. Nobody votes: the same list of ids gives everyone the same leader.",
+            "Time runs downwards, one line a robot; an arrow is a message in its sender's colour, a "
+            "broken red one a message that was lost. Nobody votes: the same list of ids gives everyone the same "
+            "leader.",
             save(sequence_chart(material, before, after), folder, f"election-{number}"),
         )
     yield _Picture(
         "Each follower",
-        "A robot whose throughput falls below the threshold raises its gain k_rho and hurries, because it is "
-        "about to lose its leader. Dashed lines mark robots that went, dotted ones a new leader.",
+        "A robot whose throughput falls below the threshold raises its gain k_rho and hurries, because "
+        "it is about to lose its leader. Dashed lines mark robots that went, dotted ones a new leader.",
         save(follower_chart(material), folder, "followers"),
     )
     yield _Picture(
@@ -112,7 +99,8 @@ def _page(material: Material, pictures: list[_Picture]) -> str:
 <head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{html.escape(scenario.name)}: {outcome}</title><style>{_CSS}</style></head>
 <body>
-<h1>{html.escape(scenario.name)} <span class="outcome" style="background:{colour}">{outcome}</span></h1>
+<h1>{html.escape(scenario.name)}
+<span class="outcome" style="background:{colour}">{outcome}</span></h1>
 <p class="lead">{html.escape(summary_sentence(material))}</p>
 <h2>What happened</h2>
 {_story_table(story(material))}
@@ -123,9 +111,10 @@ def _page(material: Material, pictures: list[_Picture]) -> str:
 {_glossary()}
 <h2>The run</h2>
 {_run_table(material)}
-<details><summary>The whole scenario</summary><pre>{html.escape(json.dumps(as_map(scenario), indent=1))}</pre></details>
+<details><summary>The whole scenario</summary>
+<pre>{html.escape(json.dumps(as_map(scenario), indent=1))}</pre></details>
 </body></html>
-"""  # noqa: E501
+"""
 
 
 def _glossary() -> str:

@@ -161,9 +161,10 @@ def _draw_rows(axes: Axes, material: Material, rows: list[_Row], places: dict[in
             axes.text(-0.5, y, f"{row.at_s:.2f} s", ha="right", va="center", fontsize=8, color=INK)
             said_s = row.at_s
         for robot, text, colour in row.notes:
+            box = {"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": colour}
             axes.text(
                 places[robot], y, text, ha="center", va="center", fontsize=8, color=colour, zorder=5,
-                bbox={"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": colour, "linewidth": 0.8},
+                bbox=box,
             )  # fmt: skip
         for frame in row.frames:
             _draw_frame(axes, frame, y, places, material.colours)

@@ -154,14 +154,15 @@ def _losses_of_leaders(material: Material) -> Iterator[Event]:
 def _lost_leader(material: Material, at_s: float, leader: int, robots: list[int]) -> Event:
     team = material.log.scenario.team
     who = f"Robots {_ids(sorted(robots))} have" if len(robots) > 1 else f"Robot {robots[0]} has"
-    text = f"{who} not heard leader {leader} for {team.leader_timeout:g} s and give{'s' if len(robots) == 1 else ''} it up"
+    silence = f"not heard leader {leader} for {team.leader_timeout:g} s"
+    text = f"{who} {silence} and give{'s' if len(robots) == 1 else ''} it up"
     successor = _successor(material.reigns, at_s, leader)
     if successor is None:
         return Event(at_s, 2, f"{text}.")
     return Event(
         at_s, 2,
-        f"{text}. Each strikes it from the same list and comes, without a message, to the same leader: "
-        f"robot {successor.leader}, the median of {_ids(successor.members)}, and the shape {successor.shape}.",
+        f"{text}. Each strikes it from the same list and comes, without a message, to the same leader, "
+        f"robot {successor.leader}, median of {_ids(successor.members)}, and shape, {successor.shape}.",
     )  # fmt: skip
 
 

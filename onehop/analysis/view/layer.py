@@ -1,4 +1,4 @@
-"""Write the viewer layer into a log: the wire channels as they were, and beside them what viewers decode.
+"""Write the viewer layer into a log: the wire channels as they were, beside them what viewers decode.
 
 Poses ten times a second, scans five times, links twice: enough for the eye. Every viewer message has the
 log time of its tick. A layer that is there already is replaced.
@@ -20,6 +20,7 @@ from onehop.analysis.copying import LogCopy
 from onehop.analysis.log import Log
 from onehop.analysis.palette import robot_colours
 from onehop.analysis.view import scene
+from onehop.analysis.view.schemas import Log as EventLog
 from onehop.analysis.view.schemas import schema_of
 from onehop.contracts import topics
 from onehop.contracts.geometry import Pose
@@ -34,7 +35,14 @@ WALL_STEP = 0.25
 """Distance between two points of a wall [m]."""
 
 _WIRE = topics.wire("")
-_GRAVE = frozenset({"lost_leader", "lost_follower", "no_way", "departure"})
+_LEVELS = {
+    "lost_leader": EventLog.WARNING,
+    "lost_follower": EventLog.WARNING,
+    "no_way": EventLog.ERROR,
+    "target": EventLog.DEBUG,
+    "mode": EventLog.DEBUG,
+}
+"""How grave a kind of note is; anything else is information."""
 
 
 def write_view(log: Log, out: Path) -> dict[str, int]:
@@ -121,7 +129,11 @@ class _Layer:
         self._add_poses(tick, stamp, poses)
         if tick % self._strides[SCAN_S] == 0:
             self._add_scans(tick, stamp, wire, poses)
-        actions = {robot: msgpack.unpackb(wire[topics.out(robot)]) for robot in poses if topics.out(robot) in wire}
+        actions = {
+            robot: msgpack.unpackb(wire[topics.out(robot)])
+            for robot in poses
+            if topics.out(robot) in wire
+        }
         if tick % self._strides[LINK_S] == 0:
             self._add_links(tick, stamp, actions, poses)
         self._add_events(tick, stamp, actions, truth)
@@ -157,14 +169,12 @@ class _Layer:
         for robot, pose in placed:
             self._put(f"/{robot_name(robot)}/pose", tick, scene.pose_in_map(stamp, pose))
         self._put(
-            "/robots/bodies", tick, scene.bodies(stamp, placed, self._radius, self._colours, gone)
+            "/robots/bodies", tick, scene.bodies(stamp, sorted(poses), self._radius, self._colours, gone)
         )
         rings = scene.body_points(placed, self._radius, self._colours)
         self._put("/robots/points", tick, scene.cloud(stamp, scene.MAP, rings))
 
-    def _add_scans(
-        self, tick: int, stamp: int, wire: dict[str, bytes], poses: dict[int, Pose]
-    ) -> None:
+    def _add_scans(self, tick: int, stamp: int, wire: dict[str, bytes], poses: dict[int, Pose]) -> None:
         for robot in sorted(poses):
             data = wire.get(topics.obs(robot))
             if data is None:
@@ -175,9 +185,7 @@ class _Layer:
             self._put(f"/{name}/scan_points", tick, points)
             self._put(f"/{name}/scan", tick, scene.laser_scan(stamp, robot, ranges, self._angles))
 
-    def _add_links(
-        self, tick: int, stamp: int, actions: dict[int, Any], poses: dict[int, Pose]
-    ) -> None:
+    def _add_links(self, tick: int, stamp: int, actions: dict[int, Any], poses: dict[int, Pose]) -> None:
         links = []
         for robot, action in sorted(actions.items()):
             status = action["status"]
@@ -198,9 +206,17 @@ class _Layer:
 
     def _add_events(self, tick: int, stamp: int, actions: dict[int, Any], truth: Any) -> None:
         for one in truth["departures"]:
-            self._put("/events", tick, scene.event(stamp, one["robot"], f"gone: {one['why']}", True))
+            text = f"gone, {one['why']}"
+            self._put("/events", tick, scene.event(stamp, one["robot"], text, EventLog.WARNING))
         for robot, action in sorted(actions.items()):
             for note in action["notes"]:
-                details = ", ".join(f"{key} {value}" for key, value in note["data"].items())
-                text = f"{note['kind'].replace('_', ' ')}: {details}"
-                self._put("/events", tick, scene.event(stamp, robot, text, note["kind"] in _GRAVE))
+                level = _LEVELS.get(note["kind"], EventLog.INFO)
+                self._put("/events", tick, scene.event(stamp, robot, _sentence(note), level))
+
+
+def _sentence(note: dict[str, Any]) -> str:
+    details = ", ".join(
+        f"{key} {value:.2f}" if isinstance(value, float) else f"{key} {value}"
+        for key, value in note["data"].items()
+    )
+    return f"{note['kind'].replace('_', ' ')}{': ' if details else ''}{details}"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from onehop.analysis.palette import rgb
+from onehop.analysis.palette import WALL_EDGE, rgb
 from onehop.analysis.view.schemas import (
     FrameTransforms,
     LaserScan,
@@ -29,7 +29,15 @@ _UINT8 = 1
 """foxglove.PackedElementField.NumericType."""
 
 _COLOURED = np.dtype(
-    [("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("red", "u1"), ("green", "u1"), ("blue", "u1"), ("alpha", "u1")]
+    [
+        ("x", "<f4"),
+        ("y", "<f4"),
+        ("z", "<f4"),
+        ("red", "u1"),
+        ("green", "u1"),
+        ("blue", "u1"),
+        ("alpha", "u1"),
+    ]
 )
 _LINK_HEIGHT = 0.4
 _BODY_HEIGHT = 0.3
@@ -63,14 +71,16 @@ def pose_in_map(stamp_ns: int, pose: Pose) -> Any:
 
 def cloud(stamp_ns: int, frame: str, points: npt.NDArray[Any]) -> Any:
     """A point cloud; points: (n, 3) float32 [m], or a structured array of _COLOURED."""
-    message = PointCloud(frame_id=frame, point_stride=points.dtype.itemsize if points.dtype.names else 12)
+    message = PointCloud(
+        frame_id=frame, point_stride=points.dtype.itemsize if points.dtype.names else 12
+    )
     message.timestamp.FromNanoseconds(stamp_ns)
     message.pose.orientation.w = 1.0
     for number, name in enumerate(("x", "y", "z")):
-        message.fields.add(name=name, offset=4 * number, type=_FLOAT32)  # type: ignore[arg-type]
+        message.fields.add(name=name, offset=4 * number, type=_FLOAT32)
     if points.dtype.names:
         for number, name in enumerate(("red", "green", "blue", "alpha")):
-            message.fields.add(name=name, offset=12 + number, type=_UINT8)  # type: ignore[arg-type]
+            message.fields.add(name=name, offset=12 + number, type=_UINT8)
     message.data = points.tobytes()
     return message
 
@@ -94,15 +104,15 @@ def laser_scan(stamp_ns: int, robot: int, ranges: Points, angles: npt.NDArray[np
     return message
 
 
-def wall_points(segments: npt.NDArray[np.float64], step: float) -> Points:
-    """Points along every segment, (n, 4), at most `step` apart, at two heights, (m, 3) [m]."""
-    spots = []
+def wall_points(segments: npt.NDArray[np.float64], step: float) -> npt.NDArray[Any]:
+    """Grey points along every segment, (n, 4), at most `step` apart, at two heights; _COLOURED."""
+    spots = [np.empty((0, 2))]
     for x0, y0, x1, y1 in segments.tolist():
         share = np.linspace(0.0, 1.0, max(2, math.ceil(math.hypot(x1 - x0, y1 - y0) / step) + 1))
         spots.append(np.column_stack((x0 + share * (x1 - x0), y0 + share * (y1 - y0))))
-    flat = np.vstack(spots) if spots else np.empty((0, 2))
-    layers = [np.column_stack((flat, np.full(len(flat), z))) for z in (0.0, 0.6)]
-    return np.vstack(layers).astype(np.float32)
+    x, y = np.vstack(spots).T
+    grey = rgb(WALL_EDGE)
+    return np.concatenate([_painted(x, y, z, grey) for z in (0.0, 0.6)])
 
 
 def walls(stamp_ns: int, segments: npt.NDArray[np.float64]) -> Any:
@@ -110,7 +120,7 @@ def walls(stamp_ns: int, segments: npt.NDArray[np.float64]) -> Any:
     message = SceneUpdate()
     entity = message.entities.add(frame_id=MAP, id="walls")
     entity.timestamp.FromNanoseconds(stamp_ns)
-    line = entity.lines.add(type=2, thickness=2.0, scale_invariant=True)  # type: ignore[arg-type]
+    line = entity.lines.add(type=2, thickness=2.0, scale_invariant=True)
     line.pose.orientation.w = 1.0
     for x0, y0, x1, y1 in segments.tolist():
         line.points.add(x=x0, y=y0)
@@ -121,14 +131,13 @@ def walls(stamp_ns: int, segments: npt.NDArray[np.float64]) -> Any:
 
 
 def bodies(
-    stamp_ns: int, poses: Iterable[tuple[int, Pose]], radius: float, colours: dict[int, str],
-    gone: Iterable[int] = (),
-) -> Any:  # fmt: skip
+    stamp_ns: int, robots: Iterable[int], radius: float, colours: dict[int, str], gone: Iterable[int]
+) -> Any:
     """Robots as coloured discs with their number, for Foxglove; those that are gone are taken away."""
     message = SceneUpdate()
     for robot in gone:
         message.deletions.add(id=robot_name(robot)).timestamp.FromNanoseconds(stamp_ns)
-    for robot, pose in poses:
+    for robot in robots:
         entity = message.entities.add(frame_id=base_link(robot), id=robot_name(robot))
         entity.timestamp.FromNanoseconds(stamp_ns)
         disc = entity.cylinders.add(bottom_scale=1.0, top_scale=0.7)
@@ -203,8 +212,8 @@ def link(stamp_ns: int, **numbers: float) -> Any:
     return message
 
 
-def event(stamp_ns: int, robot: int, text: str, grave: bool) -> Any:
-    """A line for the log panel; robot 0 is the world."""
-    message = Log(message=text, name=robot_name(robot) if robot else "world", level=3 if grave else 2)  # type: ignore[arg-type]
+def event(stamp_ns: int, robot: int, text: str, level: int) -> Any:
+    """A line for the log panel."""
+    message = Log(message=f"{robot_name(robot)}: {text}", name=robot_name(robot), level=level)  # type: ignore[arg-type]
     message.timestamp.FromNanoseconds(stamp_ns)
     return message

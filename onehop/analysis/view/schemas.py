@@ -12,7 +12,8 @@ from google.protobuf import descriptor_pool, message_factory, timestamp_pb2
 from google.protobuf.descriptor_pb2 import FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet
 
 LINK_FIELDS = (
-    "throughput_bps", "threshold_bps", "snr_db", "bit_error_rate", "k_rho_per_s", "error_m", "distance_m",
+    "throughput_bps", "threshold_bps", "snr_db", "bit_error_rate", "k_rho_per_s", "error_m",
+    "distance_m",
 )  # fmt: skip
 """Numbers of onehop.Link, after its timestamp; nan where there is nothing to tell."""
 
@@ -64,5 +65,6 @@ def schema_of(kind: Any) -> tuple[str, bytes]:
 
 
 __all__ = [
-    "FrameTransforms", "LaserScan", "Link", "Log", "PointCloud", "PoseInFrame", "SceneUpdate", "schema_of",
+    "FrameTransforms", "LaserScan", "Link", "Log", "PointCloud", "PoseInFrame", "SceneUpdate",
+    "schema_of",
 ]  # fmt: skip

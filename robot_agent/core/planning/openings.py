@@ -18,6 +18,9 @@ from robot_agent.core.scan import FloatArray
 
 NOTHING = -1
 
+Edge = tuple[FloatArray, FloatArray]
+"""Points at the edge of the unseen, (n, 2) [m], and the direction to the unseen side, (n,) [rad]."""
+
 MOST_MOVES = 8
 """Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
 
@@ -52,6 +55,7 @@ class Openings:
         before = self.place
         if nearest == NOTHING or (distance > 1.2 * self.spacing and memory.has_room):
             self.place = memory.add(pose.x, pose.y, PLACE)
+            self.gaze[self.place] = pose.heading
         elif distance < 1.8 * self.inflation:
             self.place = nearest
         if before == NOTHING:
@@ -80,25 +84,30 @@ class Openings:
         beside = near_rim.min(axis=1, initial=np.inf) < self.rim**2
         candidates = np.flatnonzero(np.isfinite(costs) & beside)
         candidates = candidates[candidates > 0]
-        self._refute(view, rim, known, roadmap.points[candidates])
+        outward = outward[near_rim.argmin(axis=1)] if len(rim) else np.zeros(len(roadmap.points))
+        self._refute(view, rim, known, (roadmap.points[candidates], outward[candidates]))
         candidates = candidates[self._worth(roadmap.points[candidates], record)]
         value = costs[candidates] + np.hypot(*(roadmap.points[candidates] - self.goal).T)
         offset = math.dist(view.origin, self.memory.xy[self.place])
-        fresh: list[int] = []
+        decided: list[int] = []
         for point in candidates[np.argsort(value, kind="stable")].tolist():
             here = roadmap.points[point]
             if not self.memory.has_room:
                 break
-            if all(math.dist(here, roadmap.points[p]) >= self.spacing for p in fresh):
-                fresh.append(point)
+            if any(math.dist(here, roadmap.points[p]) < self.spacing for p in decided):
+                continue
+            decided.append(point)
+            if self._closer(here[None], record)[0] or not self._seen_before(view, here):
                 number = self.memory.add(float(here[0]), float(here[1]), OPENING)
-                self.gaze[number] = outward[int(np.argmin(near_rim[point]))]
+                self.gaze[number] = outward[point]
                 self.moves[number] = 0
                 self.memory.join(self.place, number, float(costs[point]) + offset)
 
     def _worth(self, points: FloatArray, record: float) -> BoolArray:
-        """Which (n, 2) points are worth a new opening: far enough from openings, and either closer to the
-        goal than the robot ever was, or far enough from places and closed openings.
+        """Which (n, 2) points are worth a new opening.
+
+        They are far enough from other openings, and either closer to the goal than the robot ever was, or
+        far enough from places and closed openings.
         """
         nearest = {
             kind: squared_distances(points, self.memory.xy[self.memory.of_kind(kind)]).min(
@@ -106,44 +115,64 @@ class Openings:
             )
             for kind in (PLACE, OPENING, CLOSED)
         }
-        progress = np.hypot(*(points - self.goal).T) < record - self.inflation
         new = (nearest[PLACE] >= self.spacing**2) & (nearest[CLOSED] >= 0.25 * self.spacing**2)
-        return np.asarray((nearest[OPENING] >= self.spacing**2) & (new | progress))
+        return np.asarray((nearest[OPENING] >= self.spacing**2) & (new | self._closer(points, record)))
 
-    def _refute(self, view: View, rim: FloatArray, known: list[int], candidates: FloatArray) -> None:
-        """Openings in full view with nothing unseen around them: move them on with the edge of the
-        unseen if that is near, and close the others.
+    def _closer(self, points: FloatArray, record: float) -> BoolArray:
+        """Which (n, 2) points are closer to the goal than the robot ever was, by a step."""
+        return np.asarray(np.hypot(*(points - self.goal).T) < record - self.inflation)
+
+    def _seen_before(self, view: View, point: FloatArray) -> bool:
+        """Did the robot look at this place from near by before? Then it was judged there and then.
+
+        A place looked at what lay before it; nothing known now may stand in between.
+        """
+        places = self.memory.of_kind(PLACE)
+        offset = point - self.memory.xy[places]
+        near = np.hypot(*offset.T) < 0.6 * view.fan.range
+        before = np.cos(np.arctan2(offset[:, 1], offset[:, 0]) - self.gaze[places]) > 0.1
+        places = places[near & before & (places != self.place)]
+        if not len(places):
+            return False
+        ends = np.broadcast_to(point, (len(places), 2))
+        return bool(view.passable(self.memory.xy[places], ends, 0.3 * self.inflation).any())
+
+    def _refute(self, view: View, rim: FloatArray, known: list[int], edge: Edge) -> None:
+        """Openings in full view with nothing unseen around them, and those that the robot stands in and
+        looks out of: move them on with the edge of the unseen if that is near, and close the others.
         """
         openings = np.array([n for n in known if self.memory.kind[n] == OPENING], dtype=np.intp)
-        if not len(openings):
-            return
         points = self.memory.xy[openings]
         beside_unseen = squared_distances(points, rim).min(axis=1, initial=np.inf) < self.rim**2
         still = beside_unseen & view.free(points, self.inflation)[0]
         turn = self.gaze[openings] - view.pose.heading
         behind = (np.cos(turn) < 0.36) & (np.hypot(*(points - view.origin).T) < 1.5 * self.spacing)
-        for number in openings[~still & ~behind].tolist():
-            if not self._move_on(number, candidates):
+        done = openings[~still & ~behind].tolist()
+        for number in done + [n for n in self._entered(view.pose) if n not in done]:
+            if not self._move_on(view, number, edge):
                 self.memory.close(number)
 
-    def _move_on(self, number: int, candidates: FloatArray) -> bool:
+    def _entered(self, pose: Pose) -> list[int]:
+        """Openings that the robot stands in with their unseen side in view."""
+        openings = self.memory.of_kind(OPENING)
+        near = np.hypot(*(self.memory.xy[openings] - (pose.x, pose.y)).T) < 0.4 * self.spacing
+        ahead = np.cos(self.gaze[openings] - pose.heading) > 0.5
+        return [int(n) for n in openings[near & ahead]]
+
+    def _move_on(self, view: View, number: int, edge: Edge) -> bool:
         """The edge of the unseen recedes as the robot comes closer; its opening goes with it."""
-        if not len(candidates) or self.moves[number] >= MOST_MOVES:
+        points, outward = edge
+        if not len(points) or self.moves[number] >= MOST_MOVES:
             return False
-        distance = np.hypot(*(candidates - self.memory.xy[number]).T)
+        distance = np.hypot(*(points - self.memory.xy[number]).T)
+        distance[np.hypot(*(points - view.origin).T) < 0.5 * self.spacing] = np.inf
         nearest = int(np.argmin(distance))
         if distance[nearest] > 1.5 * self.spacing:
             return False
         self.moves[number] += 1
-        self.memory.xy[number] = candidates[nearest]
+        self.memory.xy[number] = points[nearest]
+        self.gaze[number] = outward[nearest]
         return True
-
-    def arrive(self, pose: Pose) -> None:
-        """Close the openings that the robot stands in with their unseen side in view."""
-        for number in self.memory.of_kind(OPENING).tolist():
-            near = math.dist((pose.x, pose.y), self.memory.xy[number]) < 0.5 * self.spacing
-            if near and abs(wrap_angle(float(self.gaze[number]) - pose.heading)) < 1.6:
-                self.memory.close(number)
 
     def best(self, cost: dict[int, float], kept: int) -> int:
         """The reachable opening with the least g + h; `kept` stays unless another is clearly better."""
@@ -160,12 +189,12 @@ class Openings:
 
     def closest_place(self, cost: dict[int, float]) -> int:
         """The reachable place that is closest to the goal."""
-        places = [n for n in self.memory.of_kind(PLACE).tolist() if n in cost]
+        places: list[int] = [n for n in self.memory.of_kind(PLACE).tolist() if n in cost]
         return min(places, key=lambda n: (math.dist(self.memory.xy[n], self.goal), n))
 
 
 def edge_samples(view: View, margin: float) -> FloatArray:
-    """Points for the road map where outlines leave the laser's range, (n, 2) [m]: chance may miss them."""
+    """Points where outlines leave the laser's range, (n, 2) [m]: chance may miss them."""
     beside = np.convolve(~view.open_beams, np.ones(13), mode="same") > 0
     far = np.flatnonzero(view.open_beams & beside)
     return view.origin + view.directions[far] * (view.fan.range - margin)

@@ -116,7 +116,7 @@ class Stepwise:
     def _advance(
         self, pose: Pose, roadmap: RoadMap, samples: FloatArray, direction: float | None
     ) -> None:
-        """Drive to the best kept point, or step back. direction: of a turned fan; None towards the goal."""
+        """Drive to the best kept point, or step back. direction: of a turned fan; None: to the goal."""
         costs = roadmap.costs()
         offset = roadmap.points - roadmap.points[0]
         good = np.flatnonzero(np.isfinite(costs) & self._unused(roadmap.points) & (roadmap.marks != 0))

@@ -77,6 +77,14 @@ class View:
         shown: BoolArray = inside & (distance <= np.minimum(self.sight[low], self.sight[high]))
         return shown
 
+    def surrounded(self, points: FloatArray, margin: float) -> BoolArray:
+        """Which (n, 2) points are so far inside the field of view that nothing unseen beside its edge can
+        be closer than `margin`; what is near the robot counts, because it was in view a moment ago.
+        """
+        bearing, distance = self.polar(points)
+        inside = np.clip(self.fan.angles[-1] - np.abs(bearing), 0.0, math.pi / 2)
+        return np.asarray((distance * np.sin(inside) >= margin) | (distance < 4.0 * margin))
+
     def allowance(self, clearance: float) -> Float32Array:
         """Least distance to keep from each obstacle, squared, (n,) [m2].
 
@@ -84,10 +92,10 @@ class View:
         obstacle may move out of it, not further in.
         """
         have = squared_distances(self.origin[None], self.obstacles)[0]
-        return np.minimum(clearance**2, np.maximum(np.sqrt(have) - 0.01, 0.0) ** 2)
+        return np.asarray(np.minimum(clearance**2, np.maximum(np.sqrt(have) - 0.01, 0.0) ** 2))
 
     def free(self, points: FloatArray, clearance: float) -> tuple[BoolArray, FloatArray]:
-        """Which (n, 2) points keep `clearance` (or the allowance), and the room that each has, (n,) [m]."""
+        """Which (n, 2) points keep `clearance` (or the allowance), and the room of each, (n,) [m]."""
         distance2 = squared_distances(points, self.obstacles)
         keeps = (distance2 >= self.allowance(clearance)).all(axis=1)
         return np.asarray(keeps), np.sqrt(distance2.min(axis=1, initial=np.inf))

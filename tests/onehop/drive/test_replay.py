@@ -40,6 +40,15 @@ def _changed(source: Path, target: Path, tick: int, key: str, place: bytes, inst
     writer.close(None)
 
 
+def _first_turning(path: Path, robot: int) -> tuple[int, float]:
+    """The first tick in which a robot turns, and its turn rate."""
+    for tick in LogFile(path).ticks():
+        data = tick.get(topics.out(robot))
+        if data is not None and msgpack.unpackb(data)["twist"]["w"]:
+            return tick.tick, msgpack.unpackb(data)["twist"]["w"]
+    raise AssertionError(f"robot {robot} never turns")
+
+
 def test_robots_radio_and_world_say_everything_again(recorded: Path) -> None:
     report = replay(LogFile(recorded))
     assert report.divergences == 0
@@ -51,17 +60,14 @@ def test_a_changed_byte_of_an_action_is_named_by_tick_robot_and_field(
     recorded: Path, tmp_path: Path
 ) -> None:
     path = tmp_path / "changed.mcap"
-    tick = next(t for t in LogFile(recorded).ticks() if t.tick == 57)
-    data = tick.get(topics.out(3))
-    assert data is not None
-    twist = msgpack.unpackb(data)["twist"]
-    place = msgpack.packb(twist["w"])
+    tick, turning = _first_turning(recorded, 3)
+    place = msgpack.packb(turning)
     flipped = place[:-1] + bytes([place[-1] ^ 1])
-    _changed(recorded, path, 57, topics.out(3), place, flipped)
+    _changed(recorded, path, tick, topics.out(3), place, flipped)
     report = replay(LogFile(path), parts=False)
     assert report.divergences == 1
     assert report.first is not None
-    assert (report.first.tick, report.first.robot, report.first.field) == (57, 3, "twist.w")
+    assert (report.first.tick, report.first.robot, report.first.field) == (tick, 3, "twist.w")
     assert report.first.recorded != report.first.replayed
 
 

@@ -1,0 +1,168 @@
+"""Carrier sense, backoff, hidden stations and reservations, event by event (802.11-1999, 9.2)."""
+
+import pytest
+
+from onehop.contracts.messages import Cut, Fate
+from onehop.contracts.scenario import RadioSection
+from radio_proxy.core.airtime import dsss
+from radio_proxy.core.contention import EVERYONE
+from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.saturation import Saturation, ring
+from tests.radio.stations import Cell
+
+STILL = RadioSection(shadowing_db=0.0, mac_header_bytes=28)
+BASIC = RadioSection(shadowing_db=0.0, mac_header_bytes=28, rts_threshold_bytes=2304)
+HIDDEN = (Cut((1,), (3,)),)
+"""Stations 0 and 2 do not hear each other; station 1, between them, hears both."""
+
+
+@pytest.mark.parametrize("stations", [1, 2, 5, 10])
+@pytest.mark.parametrize("rts_cts", [True, False])
+def test_shortcuts_change_nothing(stations: int, rts_cts: bool) -> None:
+    """An exchange that nobody can disturb ends the same, played in three events or in eight."""
+    tallies = []
+    for take_shortcuts in (True, False):
+        load, budget = ring(stations, 800, rts_cts), link_budget(STILL)
+        run = Saturation(load, dsss(STILL), budget, 7, 7, take_shortcuts=take_shortcuts)
+        tallies.append(run.run(3.0))
+    assert tallies[0] == tallies[1]
+    assert sum(tallies[0].delivered) > 300
+
+
+def test_an_idle_medium_is_entered_after_difs_without_backoff() -> None:
+    """50 + 352 + 10 + 304 + 10 + 6816 us (radio.md)."""
+    cell = Cell([(0, 0), (0, 0)], STILL)
+    cell.send_at(1000, 0, 1)
+    cell.run(20_000)
+    assert [now for now, _, _ in cell.arrived] == [1_000_000 + 7_542_000]
+
+
+def test_a_busy_medium_is_entered_after_a_backoff() -> None:
+    """9.2.5.1: who arrives while the medium is busy draws a backoff and waits for DIFS after it."""
+    cell = Cell([(0, 0)] * 4, STILL)
+    cell.send_at(0, 0, 1)
+    cell.send_at(3000, 2, 3)
+    cell.run(40_000)
+    (first, _, _), (second, sender, _) = cell.arrived
+    after_ack = first + 314_000
+    slots = (second - after_ack - 7_542_000) / 20_000
+    assert sender == 2
+    assert slots == int(slots)
+    assert 0 <= slots <= 31
+
+
+def test_backoff_freezes_while_the_medium_is_busy() -> None:
+    """9.2.5.2: slots that have passed are not waited for again."""
+    cell = Cell([(0, 0)] * 3, STILL)
+    for sender in (0, 1, 2):
+        for _ in range(12):
+            cell.send_at(0, sender, (sender + 1) % 3)
+    cell.run(400_000)
+    assert len(cell.arrived) == 36
+    overhead = 36 * (7_542 + 314)
+    idle_us = cell.arrived[-1][0] / 1000 + 314 - overhead
+    assert idle_us < 36 * 31 * 20 * 0.7
+
+
+def test_stations_that_speak_in_the_same_slot_collide_and_double_their_window() -> None:
+    """Two fresh frames at the same instant: both RTS are lost, both arrive in the end."""
+    cell = Cell([(0, 0)] * 4, STILL)
+    frames = [cell.send_at(0, 0, 1), cell.send_at(0, 2, 3)]
+    cell.run(40_000)
+    assert len(cell.arrived) == 2
+    assert all(frame.attempts >= 2 for frame in frames)
+    assert cell.arrived[0][0] >= 1000 * (50 + 352 + 222 + 7_542)
+
+
+def test_a_carrier_within_the_turnaround_is_not_sensed() -> None:
+    """9.2.10: a station cannot sense what begins 5 us before its own slot, but does sense 6 us."""
+    for gap_us, attempts in ((4.9, 2), (6.0, 1)):
+        cell = Cell([(0, 0)] * 4, STILL)
+        first = cell.send_at(0, 0, 1)
+        cell.send_at(gap_us, 2, 3)
+        cell.run(60_000)
+        assert len(cell.arrived) == 2
+        assert (first.attempts >= 2) == (attempts == 2)
+
+
+def test_hidden_stations_collide_with_basic_access() -> None:
+    """The second station cannot sense the first one's data and destroys it."""
+    cell = Cell([(-5, 0), (0, 0), (5, 0)], BASIC, HIDDEN)
+    first = cell.send_at(0, 0, 1)
+    second = cell.send_at(1000, 2, 1)
+    cell.run(200_000)
+    assert first.attempts > 1
+    assert second.attempts > 1
+
+
+def test_cts_silences_hidden_stations() -> None:
+    """9.2.5.4: the CTS of the station between them reserves the medium until the ACK."""
+    cell = Cell([(-5, 0), (0, 0), (5, 0)], STILL, HIDDEN)
+    first = cell.send_at(0, 0, 1)
+    second = cell.send_at(1000, 2, 1)
+    cell.run(200_000)
+    assert (first.attempts, second.attempts) == (1, 1)
+    (one, _, _), (two, _, _) = cell.arrived
+    assert two > one + 314_000 + 7_542_000
+
+
+def test_an_rts_without_an_answer_does_not_reserve_its_whole_exchange() -> None:
+    """9.2.5.4: bystanders forget the reservation when no answer follows."""
+    cell = Cell([(0, 0), (30, 0), (0, 3), (0, 6)], RadioSection(shadowing_db=0.0, carrier_sense_db=40.0))
+    cell.send_at(0, 0, 1)
+    cell.send_at(410, 2, 3)
+    cell.run(60_000)
+    arrival_us = cell.arrived[0][0] / 1000
+    assert cell.arrived[0][1] == 2
+    assert arrival_us < 410 + 7_542 + 48 + 31 * 20 + 6 * 700
+
+
+def test_nobody_answers_inside_a_reservation() -> None:
+    """9.2.5.7: a station whose NAV is set leaves an RTS without a CTS."""
+    cuts = (Cut((1,), (3,)), Cut((1,), (4,)), Cut((2,), (4,)))
+    cell = Cell([(0, 0), (5, 0), (10, 0), (15, 0)], STILL, cuts)
+    cell.send_at(0, 0, 1)
+    late = cell.send_at(1200, 3, 2)
+    cell.run(8_000)
+    assert late.attempts >= 2
+    assert late.cause is Fate.RETRY_LIMIT
+    cell.run(60_000)
+    assert len(cell.arrived) == 2
+
+
+def test_a_frame_is_given_up_after_the_retry_limit() -> None:
+    cell = Cell([(0, 0), (60, 0)], STILL)
+    frame = cell.send_at(0, 0, 1)
+    cell.run(100_000)
+    assert cell.given_up == [frame]
+    assert (frame.attempts, frame.cause) == (7, Fate.BELOW_THRESHOLD)
+
+
+def test_a_broadcast_is_sent_once_at_the_basic_rate() -> None:
+    """No RTS, no ACK: DIFS + 192 + 8 (28 + 40) us, at 1 Mb/s whatever the data rate."""
+    fast = RadioSection(shadowing_db=0.0, mac_header_bytes=28, rate_mbps=11.0)
+    cell = Cell([(0, 0), (0, 0)], fast)
+    frame = cell.send_at(0, 0, EVERYONE, 40)
+    cell.run(20_000)
+    assert [now for now, _, _ in cell.arrived] == [1000 * (50 + 192 + 8 * 68)]
+    assert frame.attempts == 1
+
+
+def test_propagation_delays_every_frame() -> None:
+    """Thesis eq. 3.16: three delays until the data has arrived; 299.79 m are a microsecond."""
+    loud = RadioSection(shadowing_db=0.0, mac_header_bytes=28, tx_power_dbm=70.0)
+    cell = Cell([(0, 0), (299.792458, 0)], loud)
+    cell.send_at(0, 0, 1)
+    cell.run(20_000)
+    assert [now for now, _, _ in cell.arrived] == [7_542_000 + 3_000]
+
+
+def test_a_repeated_copy_is_not_handed_up_twice() -> None:
+    """9.2.9: when only the ACK is lost the sender repeats, the receiver drops the copy."""
+    faded = RadioSection(mac_header_bytes=28)
+    cell = Cell([(0, 0), (17, 0)], faded)
+    frames = [cell.send_at(0, 0, 1) for _ in range(60)]
+    cell.run(3_000_000)
+    arrived = [id(frame) for _, _, frame in cell.arrived]
+    assert len(arrived) == len(set(arrived)) > 40
+    assert any(frame.received for frame in cell.given_up) or sum(f.attempts for f in frames) > 70
