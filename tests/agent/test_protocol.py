@@ -198,6 +198,7 @@ def test_stale_epoch_is_ignored():
 def test_foreign_and_hostile_payloads_are_counted_and_ignored():
     net = drive()
     here = Pose(0.0, 0.0, 0.0)
+    strangers, usurped = Roster(900, (1, 2, 3, 4, 9)), Roster(900, (1, 2, 3))
     hostile = [
         (7, encode(Join(5, here))),  # nobody's robot
         (3, b"\xc1\xff"),  # no msgpack at all
@@ -209,7 +210,7 @@ def test_foreign_and_hostile_payloads_are_counted_and_ignored():
             ),
         ),
         (5, encode(Beacon(Roster(900, (1, 2, 3)), Phase.DRIVING, False, here))),  # not its leader
-        (5, encode(Command(Order.NEXT, Roster(900, (1, 2, 3)), 0, Phase.FINAL, False, here, (), ()))),
+        (5, encode(Command(Order.NEXT, usurped, 0, Phase.FINAL, False, here, (), ()))),
         (1, encode(Join(2**31 - 1, here))),  # to a follower: not its business
     ]
     before = {i: net.status(i) for i in (1, 2)}
