@@ -6,8 +6,8 @@ import pytest
 
 from onehop import scenario_file
 from onehop.contracts.errors import ScenarioError
-from onehop.drive.codec import decode, encode
 from onehop.contracts.scenario import Briefing, Scenario, robot_briefing
+from onehop.drive.codec import decode, encode
 from tests.onehop.scenes import FIELD, field
 
 SCENARIOS = sorted((Path(__file__).parents[2] / "scenarios").glob("*.toml"))
