@@ -1,9 +1,9 @@
-"""Whole missions a second: one process, lock-step over processes, and IR-SIM with the same laser beside them.
+"""Whole missions a second: one process, lock-step over processes, and IR-SIM with the same laser.
 
 Prints one JSON object. The peer is measured in the same run, in turns with ours, and medians are taken,
-because absolute times on shared machines drift by a factor of two. Without `pip install ir-sim` the peer's
-figure is "not installed". IR-SIM moves the robots and casts the laser; ours also runs radio, team, planner
-and recording.
+because absolute times on shared machines drift by a factor of two. Without `pip install ir-sim` the
+peer's figure is "not installed". IR-SIM moves the robots and casts the laser; ours also runs radio, team,
+planner and recording.
 """
 
 import argparse
@@ -26,6 +26,7 @@ from onehop.scenario_file import Bundle
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "map1.toml"
 ROUNDS = 3
 PEER_STEPS = 300
+LIDAR = {"name": "lidar2d", "range_min": 0, "range_max": 10, "angle_range": 3.14, "number": 181}
 
 
 def one_process(bundle: Bundle, folder: Path, record: bool) -> float:
@@ -64,9 +65,7 @@ def ir_sim(bundle: Bundle, folder: Path) -> float | None:
                 "shape": [{"name": "circle", "radius": 0.2}],
                 "state": [[8 + 2 * (i % 3), 8 + 2 * (i // 3), 0.7] for i in range(count)],
                 "goal": [[90, 90, 0]] * count,
-                "sensors": [
-                    {"name": "lidar2d", "range_min": 0, "range_max": 10, "angle_range": 3.14, "number": 181}
-                ],
+                "sensors": [LIDAR],
             }
         ],
         "obstacle": [
@@ -121,7 +120,8 @@ def main() -> None:
         "recording_share": round(1 - medians["inline_recording"] / medians["inline"], 3),
     }
     if "ir_sim" in medians:
-        result["inline_recording_over_ir_sim"] = round(medians["inline_recording"] / medians["ir_sim"], 2)
+        ratio = medians["inline_recording"] / medians["ir_sim"]
+        result["inline_recording_over_ir_sim"] = round(ratio, 2)
     else:
         result["ir_sim"] = "not installed"
     print(json.dumps(result, indent=1))

@@ -8,7 +8,7 @@ from onehop.analysis.shortest import KnownMap, way_length
 from onehop.commands.output import emit_json
 from onehop.drive.solo import Solo, solo
 from world_server.core.mapfile import load_map
-from world_server.core.walls import WallMap
+from world_server.core.walls import FloatArray, WallMap
 
 RASTER_CELLS = 400
 """Cells along the longer side of the map in which the shortest way is searched."""
@@ -42,17 +42,17 @@ def plan(
     walls = load_map(scenario.map, bundle.files)
     with scenario_file.in_file(map_file):
         run = solo(scenario, walls)
-    summary: dict[str, Any] = {**run.summary(), "shortest_m": None}
     first = run.path[0]
-    shortest = _shortest(
-        walls, scenario.planner.inflation, (first[0], first[1]), (scenario.goal.x, scenario.goal.y)
-    )
-    if shortest is not None:
-        summary["shortest_m"] = round(shortest, 3)
+    target = (scenario.goal.x, scenario.goal.y)
+    shortest = _shortest(walls, scenario.planner.inflation, (first[0], first[1]), target)
+    summary: dict[str, Any] = {
+        **run.summary(),
+        "shortest_m": None if shortest is None else round(way_length(shortest), 3),
+    }
     if figure is not None:
-        from onehop.analysis.plan_figure import draw_plan
+        from onehop.analysis.plan_figure import plan_figure
 
-        draw_plan(run, walls, scenario, figure)
+        figure.write_bytes(plan_figure(run, walls, target, shortest))
     if as_json:
         emit_json(summary)
     else:
@@ -62,11 +62,11 @@ def plan(
 
 def _shortest(
     walls: WallMap, inflation: float, start: tuple[float, float], goal: tuple[float, float]
-) -> float | None:
+) -> FloatArray | None:
+    """Taut way on the known map for the inflated robot, (n, 2) [m]."""
     xmin, ymin, xmax, ymax = walls.bounds
     known = KnownMap(walls, inflation, max(xmax - xmin, ymax - ymin) / RASTER_CELLS)
-    way = known.shortest(start, known.distances(goal))
-    return None if way is None else way_length(way)
+    return known.shortest(start, known.distances(goal))
 
 
 def _print(summary: dict[str, Any], run: Solo, figure: Path | None) -> None:

@@ -219,7 +219,7 @@ class PlannerSection:
     inflation: float = 0.5
     classify_range: float = 3.0
     memory: int = 1024
-    patience: float = 20.0
+    patience: float = 50.0
 
     def problems(self) -> Iterator[Problem]:
         yield from _positive(self, "samples", "inflation", "classify_range", "memory", "patience")

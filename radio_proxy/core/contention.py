@@ -108,6 +108,8 @@ class Contention:
 
         A station about to speak within its turnaround cannot sense it in time and collides.
         """
+        if self.next_access == NEVER and self.next_station is None:
+            return
         row, sense_db = emission.row, self._sense_db
         committed = now + self._timing.turnaround
         self.next_access, self.next_station = NEVER, None

@@ -149,7 +149,7 @@ class Dcf:
             self.at(end, self._on_broadcast_end, exchange)
             return
         receiver = self._stations[frame.receiver]
-        delay = delay_ns(self.medium.field.distance(station.index, receiver.index))
+        delay = self.medium.field.delay_ns(station.index, receiver.index)
         exchange = Exchange(station, receiver, frame, delay, fade_db, emission)
         self._open(exchange, alone, now)
 

@@ -15,15 +15,19 @@ class Draws:
 
     def uniform(self) -> float:
         """A number in [0, 1)."""
-        if not self._uniform:
+        try:
+            return self._uniform.pop()
+        except IndexError:
             self._uniform = self._stream.random(_BLOCK).tolist()
-        return self._uniform.pop()
+            return self._uniform.pop()
 
     def normal(self) -> float:
         """A standard normal number."""
-        if not self._normal:
+        try:
+            return self._normal.pop()
+        except IndexError:
             self._normal = self._stream.standard_normal(_BLOCK).tolist()
-        return self._normal.pop()
+            return self._normal.pop()
 
     def slots(self, window: int) -> int:
         """A backoff, uniform on 0..window [slots] (802.11-1999, 9.2.4)."""

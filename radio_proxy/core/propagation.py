@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 from onehop.contracts.messages import Cut, Jam, Presence
 from onehop.contracts.scenario import RadioSection
+from radio_proxy.core.airtime import delay_ns
 
 WAVE_SPEED = 3.0e8
 """Rounded as in the sums that the thesis's and ns-3's path losses come from [m/s]."""
@@ -134,7 +135,8 @@ class Field:
         self._place: dict[int, tuple[float, float]] = {}
         self._rows: dict[int, list[float]] = {}
         self._sensed_by_all: dict[int, bool] = {}
-        self._cells: dict[tuple[int, int], list[int]] = {}
+        self._delays: dict[tuple[int, int], int] = {}
+        self._cells: dict[tuple[int, int], list[tuple[int, float, float]]] = {}
         self._cuts: tuple[Cut, ...] = ()
         self.noise_rise_db: list[float] = [0.0] * self._count
         self._jams: tuple[Jam, ...] = ()
@@ -158,6 +160,13 @@ class Field:
         if row is None:
             row = self._rows[sender] = self._hear(sender)
         return row
+
+    def delay_ns(self, a: int, b: int) -> int:
+        """Propagation delay between two robots in this tick."""
+        delay = self._delays.get((a, b))
+        if self._stale or delay is None:
+            delay = self._delays[a, b] = delay_ns(self.distance(a, b))
+        return delay
 
     def distance(self, a: int, b: int) -> float:
         """Distance between two robots [m]; 0 when one of them is absent."""
@@ -191,6 +200,7 @@ class Field:
         self._stale = False
         self._rows = {}
         self._sensed_by_all = {}
+        self._delays = {}
         self._cells = {}
         self._place = {}
         reach = self.budget.reach
@@ -198,7 +208,8 @@ class Field:
             index = self._index[presence.robot]
             x, y = presence.pose.x, presence.pose.y
             self._place[index] = (x, y)
-            self._cells.setdefault((math.floor(x / reach), math.floor(y / reach)), []).append(index)
+            cell = math.floor(x / reach), math.floor(y / reach)
+            self._cells.setdefault(cell, []).append((index, x, y))
         if self._jams or any(self.noise_rise_db):
             self.noise_rise_db = [self._noise_rise(i) for i in range(self._count)]
 
@@ -213,22 +224,26 @@ class Field:
         return 10.0 * math.log10(total)
 
     def _hear(self, sender: int) -> list[float]:
+        """The row of a sender; the path loss of mean_snr_db, by squared distances, for all in reach."""
         row = [SILENT_DB] * self._count
-        row[sender] = OWN_DB
         budget = self.budget
+        reach, nearest = budget.reach, budget.reference_distance**2
+        reference_db, slope_db = budget.snr_reference_db, 5.0 * budget.exponent
         x, y = self._place[sender]
-        reach = budget.reach
         column, line = math.floor(x / reach), math.floor(y / reach)
         for near in ((column + dx, line + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)):
-            for other in self._cells.get(near, ()):
-                there_x, there_y = self._place[other]
-                distance = math.hypot(there_x - x, there_y - y)
-                if other == sender or distance > reach:
+            for other, there_x, there_y in self._cells.get(near, ()):
+                square = (there_x - x) ** 2 + (there_y - y) ** 2
+                if square <= nearest:
+                    row[other] = reference_db
+                elif square <= reach * reach:
+                    row[other] = reference_db - slope_db * math.log10(square / nearest)
+                else:
                     continue
-                row[other] = budget.mean_snr_db(distance)
                 if self._walls:
                     crossed = walls_crossed(self._walls, x, y, there_x, there_y)
                     row[other] -= crossed * budget.wall_loss_db
+        row[sender] = OWN_DB
         self._apply_cuts(sender, row)
         return row
 

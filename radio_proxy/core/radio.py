@@ -108,7 +108,6 @@ class Radio:
         self._crowded = False
         self._numbers = dict.fromkeys(self._robots, 0)
         self._verdicts: list[Verdict] = []
-        self._inboxes: dict[int, list[Reception]] = {}
         self._arrivals: list[tuple[int, int, int, int, Reception]] = []
         self._control_bytes: dict[str, int] = {}
 
@@ -118,8 +117,9 @@ class Radio:
         self._welcome(truth, start)
         self._field.update(truth.present, truth.cuts, truth.jams)
         self._offers = truth.offers
-        self._crowded = sum(bool(offer.outbox) for offer in truth.offers) > 1
-        for offer in truth.offers:
+        talking = [offer for offer in truth.offers if offer.outbox]
+        self._crowded = len(talking) > 1
+        for offer in talking:
             for transmission in offer.outbox:
                 self._submit(offer.robot, transmission, start)
         self._crowded = False
@@ -128,16 +128,15 @@ class Radio:
 
     def _hand_out(self, truth: Truth) -> Carriage:
         tick, time_ns = truth.tick, truth.time_ns
-        got: dict[int, list[Reception]] = {}
+        inboxes = {presence.robot: Inbox(tick, time_ns, ()) for presence in truth.present}
         if self._arrivals:
             self._arrivals.sort(key=lambda arrival: arrival[:4])
+            got: dict[int, list[Reception]] = {}
             for _, _, _, robot, reception in self._arrivals:
                 got.setdefault(robot, []).append(reception)
             self._arrivals = []
-        inboxes = {
-            presence.robot: Inbox(tick, time_ns, tuple(got.get(presence.robot, ())))
-            for presence in truth.present
-        }
+            for robot in sorted(got):
+                inboxes[robot] = Inbox(tick, time_ns, tuple(got[robot]))
         verdicts = tuple(self._verdicts)
         self._verdicts = []
         return Carriage(inboxes, Ether(tick, time_ns, verdicts, self._control_bytes))

@@ -19,8 +19,8 @@ from tests.radio.missions import PERIOD, Mission, Outboxes, message
 ROBOTS = 5
 robots = st.integers(1, ROBOTS)
 place = st.tuples(st.integers(0, 60), st.integers(0, 20))
-TICKS_TO_SETTLE = 700
-"""35 s: longer than a search or the wait for one."""
+TICKS_TO_SETTLE = 1000
+"""50 s: longer than two searches of MRDV (21.5 s each) or the send buffer of MRSR (30 s)."""
 
 
 class RadioMachine(RuleBasedStateMachine):

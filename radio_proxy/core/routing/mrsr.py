@@ -4,10 +4,11 @@ Left out, as the RFC allows: flow state, automatic route shortening, piggybackin
 the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
 
 Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
-flag for normal forwarding. At the origin itself a message is searched for twice at most. A robot that
-waits to reply out of its cache listens for others' replies, not for the origin's first data (8.2.5),
-because replies are the only frames of others that a card hands up here. A target answers the copies of a
-request that came no farther than the first one, because in one cell every neighbour passes one on.
+flag for normal forwarding. At the origin a message is searched for twice at most, and its time in the
+send buffer counts from when it was handed over. A robot that waits to reply out of its cache listens for
+others' replies, not for the origin's first data (8.2.5), because replies are the only frames of others
+that a card hands up here. A target answers the copies of a request that came no farther than the first
+one, because in one cell every neighbour passes one on.
 """
 
 from dataclasses import dataclass, field, replace
@@ -158,7 +159,8 @@ class MrsrRouter:
             return
         self.buffered += 1
         data.message.begin_search(now)
-        self._host.at(now + SEND_BUFFER_TIMEOUT_NS, self._on_waited_too_long, data)
+        deadline = data.message.offered + SEND_BUFFER_TIMEOUT_NS
+        self._host.at(max(now, deadline), self._on_waited_too_long, data)
         target = data.message.destination
         search = self._searches.get(target)
         if search is not None:

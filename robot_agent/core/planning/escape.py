@@ -142,7 +142,6 @@ class Escape:
             self.target = GOAL
             self._take(roadmap.path(reach[GOAL][0]), reach[GOAL][1])
             return False
-        self.openings.arrive(view.pose)
         if self.phase is Phase.SEARCH and self.spent > self.budget:
             self._enter(Phase.RETURN)
         if self.phase is not Phase.CIRCLE:

@@ -18,6 +18,9 @@ from robot_agent.core.scan import FloatArray
 
 NOTHING = -1
 
+Edge = tuple[FloatArray, FloatArray]
+"""Points at the edge of the unseen, (n, 2) [m], and the direction to the unseen side, (n,) [rad]."""
+
 MOST_MOVES = 8
 """Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
 
@@ -81,7 +84,8 @@ class Openings:
         beside = near_rim.min(axis=1, initial=np.inf) < self.rim**2
         candidates = np.flatnonzero(np.isfinite(costs) & beside)
         candidates = candidates[candidates > 0]
-        self._refute(view, rim, known, roadmap.points[candidates])
+        outward = outward[near_rim.argmin(axis=1)] if len(rim) else np.zeros(len(roadmap.points))
+        self._refute(view, rim, known, (roadmap.points[candidates], outward[candidates]))
         candidates = candidates[self._worth(roadmap.points[candidates], record)]
         value = costs[candidates] + np.hypot(*(roadmap.points[candidates] - self.goal).T)
         offset = math.dist(view.origin, self.memory.xy[self.place])
@@ -95,7 +99,7 @@ class Openings:
             decided.append(point)
             if self._closer(here[None], record)[0] or not self._seen_before(view, here):
                 number = self.memory.add(float(here[0]), float(here[1]), OPENING)
-                self.gaze[number] = outward[int(np.argmin(near_rim[point]))]
+                self.gaze[number] = outward[point]
                 self.moves[number] = 0
                 self.memory.join(self.place, number, float(costs[point]) + offset)
 
@@ -133,40 +137,42 @@ class Openings:
         ends = np.broadcast_to(point, (len(places), 2))
         return bool(view.passable(self.memory.xy[places], ends, 0.3 * self.inflation).any())
 
-    def _refute(self, view: View, rim: FloatArray, known: list[int], candidates: FloatArray) -> None:
-        """Openings in full view with nothing unseen around them: move them on with the edge of the
-        unseen if that is near, and close the others.
+    def _refute(self, view: View, rim: FloatArray, known: list[int], edge: Edge) -> None:
+        """Openings in full view with nothing unseen around them, and those that the robot stands in and
+        looks out of: move them on with the edge of the unseen if that is near, and close the others.
         """
         openings = np.array([n for n in known if self.memory.kind[n] == OPENING], dtype=np.intp)
-        if not len(openings):
-            return
         points = self.memory.xy[openings]
         beside_unseen = squared_distances(points, rim).min(axis=1, initial=np.inf) < self.rim**2
         still = beside_unseen & view.free(points, self.inflation)[0]
         turn = self.gaze[openings] - view.pose.heading
         behind = (np.cos(turn) < 0.36) & (np.hypot(*(points - view.origin).T) < 1.5 * self.spacing)
-        for number in openings[~still & ~behind].tolist():
-            if not self._move_on(number, candidates):
+        done = openings[~still & ~behind].tolist()
+        for number in done + [n for n in self._entered(view.pose) if n not in done]:
+            if not self._move_on(view, number, edge):
                 self.memory.close(number)
 
-    def _move_on(self, number: int, candidates: FloatArray) -> bool:
+    def _entered(self, pose: Pose) -> list[int]:
+        """Openings that the robot stands in with their unseen side in view."""
+        openings = self.memory.of_kind(OPENING)
+        near = np.hypot(*(self.memory.xy[openings] - (pose.x, pose.y)).T) < 0.4 * self.spacing
+        ahead = np.cos(self.gaze[openings] - pose.heading) > 0.5
+        return [int(n) for n in openings[near & ahead]]
+
+    def _move_on(self, view: View, number: int, edge: Edge) -> bool:
         """The edge of the unseen recedes as the robot comes closer; its opening goes with it."""
-        if not len(candidates) or self.moves[number] >= MOST_MOVES:
+        points, outward = edge
+        if not len(points) or self.moves[number] >= MOST_MOVES:
             return False
-        distance = np.hypot(*(candidates - self.memory.xy[number]).T)
+        distance = np.hypot(*(points - self.memory.xy[number]).T)
+        distance[np.hypot(*(points - view.origin).T) < 0.5 * self.spacing] = np.inf
         nearest = int(np.argmin(distance))
         if distance[nearest] > 1.5 * self.spacing:
             return False
         self.moves[number] += 1
-        self.memory.xy[number] = candidates[nearest]
+        self.memory.xy[number] = points[nearest]
+        self.gaze[number] = outward[nearest]
         return True
-
-    def arrive(self, pose: Pose) -> None:
-        """Close the openings that the robot stands in with their unseen side in view."""
-        for number in self.memory.of_kind(OPENING).tolist():
-            near = math.dist((pose.x, pose.y), self.memory.xy[number]) < 0.5 * self.spacing
-            if near and abs(wrap_angle(float(self.gaze[number]) - pose.heading)) < 1.6:
-                self.memory.close(number)
 
     def best(self, cost: dict[int, float], kept: int) -> int:
         """The reachable opening with the least g + h; `kept` stays unless another is clearly better."""

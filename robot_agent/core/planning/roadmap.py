@@ -60,7 +60,7 @@ class RoadMap:
         candidates = np.concatenate((extras, samples))
         marks = np.concatenate((np.arange(len(extras)), np.full(len(samples), -1)))
         free, room = view.free(candidates, clearance)
-        good = free & view.visible(candidates)
+        good = free & view.visible(candidates) & view.surrounded(candidates, clearance)
         self.points: FloatArray = np.concatenate((view.origin[None], candidates[good]))
         self.room: FloatArray = np.concatenate((view.free(view.origin[None], clearance)[1], room[good]))
         self.marks: Indices = np.concatenate(([-1], marks[good])).astype(np.intp)
@@ -134,7 +134,12 @@ class RoadMap:
         return cost
 
     def path(self, goal: int) -> FloatArray | None:
-        """Shortest way from the robot to point `goal` by A*, (n, 2) [m], robot first; None if none."""
+        """Shortest way from the robot to point `goal`, (n, 2) [m], robot first; None if there is none."""
+        chain = self.chain(goal)
+        return None if chain is None else self.shorten(self.points[chain])
+
+    def chain(self, goal: int) -> list[int] | None:
+        """The points of the shortest way to point `goal` by A*, the robot first; None if there is none."""
         points = self.points
         guess = np.hypot(*(points - points[goal]).T).tolist()
         cost, origin = {0: 0.0}, {0: 0}
@@ -142,23 +147,21 @@ class RoadMap:
         while heap:
             estimate, here = heapq.heappop(heap)
             if here == goal:
-                return self._trace(origin, goal)
+                break
             if estimate > cost[here] + guess[here] + 1e-12:
                 continue
-            for there, length in zip(
-                self.neighbours[here].tolist(), self.lengths[here].tolist(), strict=True
-            ):
+            row = zip(self.neighbours[here].tolist(), self.lengths[here].tolist(), strict=True)
+            for there, length in row:
                 reached = cost[here] + length
                 if reached < cost.get(there, math.inf):
                     cost[there], origin[there] = reached, here
                     heapq.heappush(heap, (reached + guess[there], there))
-        return None
-
-    def _trace(self, origin: dict[int, int], goal: int) -> FloatArray:
+        if goal not in cost:
+            return None
         chain = [goal]
         while chain[-1] != 0:
             chain.append(origin[chain[-1]])
-        return self.shorten(self.points[chain[::-1]])
+        return chain[::-1]
 
     def shorten(self, path: FloatArray) -> FloatArray:
         """The same way without detours: every point is dropped that a clear straight line can skip."""

@@ -77,6 +77,14 @@ class View:
         shown: BoolArray = inside & (distance <= np.minimum(self.sight[low], self.sight[high]))
         return shown
 
+    def surrounded(self, points: FloatArray, margin: float) -> BoolArray:
+        """Which (n, 2) points are so far inside the field of view that nothing unseen beside its edge can
+        be closer than `margin`; what is near the robot counts, because it was in view a moment ago.
+        """
+        bearing, distance = self.polar(points)
+        inside = np.clip(self.fan.angles[-1] - np.abs(bearing), 0.0, math.pi / 2)
+        return np.asarray((distance * np.sin(inside) >= margin) | (distance < 4.0 * margin))
+
     def allowance(self, clearance: float) -> Float32Array:
         """Least distance to keep from each obstacle, squared, (n,) [m2].
 

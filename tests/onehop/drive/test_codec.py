@@ -96,6 +96,14 @@ def test_garbage_is_refused_with_decode_error_only(data: bytes) -> None:
         decode(Inbox, data)
 
 
+def _refusal(wire: bytes) -> str | None:
+    try:
+        decode(Action, wire)
+    except DecodeError as error:
+        return str(error)
+    return None
+
+
 @given(actions, st.data())
 def test_a_cut_or_changed_message_never_raises_anything_else(
     action: Action, data: st.DataObject
@@ -106,11 +114,8 @@ def test_a_cut_or_changed_message_never_raises_anything_else(
         wire = wire[:place]
     else:
         wire[place] ^= data.draw(st.integers(1, 255))
-    try:
-        decode(Action, bytes(wire))
-    except DecodeError as error:
-        assert str(error).startswith("Action: ")
-        assert "\n" not in str(error)
+    reason = _refusal(bytes(wire))
+    assert reason is None or (reason.startswith("Action: ") and "\n" not in reason)
 
 
 @pytest.mark.parametrize(
@@ -127,7 +132,7 @@ def test_a_cut_or_changed_message_never_raises_anything_else(
 )
 def test_nothing_is_coerced(change: dict[str, object], reason: str) -> None:
     good = {"v": 1, "tick": 1, "time_ns": 5, "receptions": []}
-    with pytest.raises(DecodeError, match="Inbox: .*") as refusal:
+    with pytest.raises(DecodeError, match="Inbox: ") as refusal:
         decode(Inbox, msgpack.packb({**good, **change}))
     assert reason in str(refusal.value)
 

@@ -7,6 +7,10 @@ from onehop.drive.journal import Journal, WireMessage
 from onehop.drive.record import pack_record, unpack_record
 
 
+def _nowhere(_tick: int, _messages: list[WireMessage]) -> None:
+    """Where ticks go that nobody wants."""
+
+
 def _halves(ticks: int) -> list[tuple[int, list[WireMessage]]]:
     halves: list[tuple[int, list[WireMessage]]] = []
     for tick in range(ticks):
@@ -23,7 +27,7 @@ def test_the_digest_does_not_depend_on_who_reports_first(
     by_tick = sorted(halves, key=lambda half: half[0])  # ticks in order, the two sides of each in any
     written: list[tuple[int, list[WireMessage]]] = []
     journal = Journal(lambda tick, messages: written.append((tick, messages)))
-    reference = Journal(lambda tick, messages: None)
+    reference = Journal(_nowhere)
     for tick, messages in by_tick:
         journal.add(tick, list(messages))
     for tick, messages in _halves(4):
@@ -36,7 +40,7 @@ def test_the_digest_does_not_depend_on_who_reports_first(
 
 def test_the_digest_depends_on_every_byte_key_and_tick() -> None:
     def digest(tick: int, key: str, data: bytes) -> str:
-        journal = Journal(lambda tick, messages: None)
+        journal = Journal(_nowhere)
         journal.add(tick, [(key, data)])
         journal.add(tick, [])
         return journal.digest()
@@ -52,7 +56,7 @@ def test_the_digest_depends_on_every_byte_key_and_tick() -> None:
 
 
 def test_a_half_without_its_other_side_is_kept_for_the_end() -> None:
-    journal = Journal(lambda tick, messages: None)
+    journal = Journal(_nowhere)
     journal.add(5, [("truth", b"x")])
     assert journal.complete == -1
     assert journal.rest() == [(5, [("truth", b"x")])]

@@ -1,0 +1,115 @@
+"""Local road maps: what they keep clear of, A*, and what the view says about free space."""
+
+import math
+
+import numpy as np
+import pytest
+
+from onehop.contracts.geometry import Pose
+from onehop.contracts.randomness import generator
+from onehop.contracts.scenario import MapSection, RobotSection
+from robot_agent.core.planning.passage import passage_width
+from robot_agent.core.planning.roadmap import RoadMap, sample_fan
+from robot_agent.core.planning.view import NO_POINTS, Afterimage, View, segment_distances2
+from robot_agent.core.scan import Fan
+from tests.agent.planning.fields import box, field
+from world_server.core.laser import Laser
+from world_server.core.mapfile import load_map
+from world_server.core.walls import segment_distances
+
+BODY = RobotSection()
+FAN = Fan(BODY)
+BLOCKS = field(box(16, 6, 18, 12), box(14, 14, 15, 20), box(20, 13, 24, 15), size=30.0)
+
+
+def look(ground: MapSection, x: float, y: float, heading: float) -> View:
+    scan = Laser(load_map(ground, {}), BODY).scans(np.array([(x, y, heading)]), np.zeros(1, dtype=np.int32))
+    return View(FAN, Pose(x, y, heading), scan[0], frozenset(), 0.05)
+
+
+def road_map(view: View, seed: int = 1, samples: int = 200) -> RoadMap:
+    draws = generator(seed, "test").random((samples, 2))
+    points = sample_fan(view, draws, view.pose.heading, math.pi / 2, 0.5)
+    return RoadMap(view, points, NO_POINTS, 0.52, 0.7)
+
+
+@pytest.mark.parametrize("heading", [0.0, 0.9, -0.7])
+def test_every_edge_keeps_the_inflation_from_the_true_walls(heading: float) -> None:
+    roadmap = road_map(look(BLOCKS, 10.0, 11.0, heading))
+    assert len(roadmap.edges) > 200
+    walls = load_map(BLOCKS, {}).segments
+    for share in np.linspace(0.0, 1.0, 9):
+        points = roadmap.edges[:, :2] + share * (roadmap.edges[:, 2:] - roadmap.edges[:, :2])
+        assert segment_distances(points, walls).min() >= 0.5
+
+
+def test_a_star_finds_the_cheapest_way() -> None:
+    """A* and the costs by relaxation are two algorithms; the way's edges add up to the cost."""
+    roadmap = road_map(look(BLOCKS, 10.0, 11.0, 0.0))
+    costs = roadmap.costs()
+    length = {}
+    for here, row in enumerate(roadmap.neighbours):
+        for there, weight in zip(row.tolist(), roadmap.lengths[here].tolist(), strict=True):
+            length[here, there] = min(weight, length.get((here, there), math.inf))
+    reachable = np.flatnonzero(np.isfinite(costs))[1:]
+    assert len(reachable) > 100
+    for goal in reachable[::10].tolist():
+        chain = roadmap.chain(goal)
+        assert chain is not None
+        total = sum(length[a, b] for a, b in zip(chain, chain[1:], strict=False))
+        assert total == pytest.approx(costs[goal], abs=1e-6)
+
+
+def test_a_point_without_edges_has_no_way() -> None:
+    roadmap = road_map(look(BLOCKS, 10.0, 11.0, 0.0))
+    unreachable = np.flatnonzero(~np.isfinite(roadmap.costs()))
+    for goal in unreachable.tolist():
+        assert roadmap.path(goal) is None
+    roadmap.neighbours = roadmap.neighbours[:, :0]
+    roadmap.lengths = roadmap.lengths[:, :0]
+    assert roadmap.path(len(roadmap.points) - 1) is None
+
+
+def test_same_draws_make_the_same_road_map() -> None:
+    view = look(BLOCKS, 10.0, 11.0, 0.3)
+    assert road_map(view).edges.tobytes() == road_map(view).edges.tobytes()
+    assert road_map(view).edges.tobytes() != road_map(view, seed=2).edges.tobytes()
+
+
+def test_what_lies_behind_a_wall_is_not_visible() -> None:
+    view = look(BLOCKS, 10.0, 9.0, 0.0)
+    points = np.array(((15.0, 9.0), (19.0, 9.0), (8.0, 9.0), (20.5, 9.0)))
+    assert view.visible(points).tolist() == [True, False, False, False]
+
+
+def test_who_stands_inside_the_inflation_may_move_out_but_not_further_in() -> None:
+    view = look(field(box(12, 0, 13, 30), size=30.0), 11.7, 15.0, math.pi)
+    wall = np.column_stack((np.full(60, 12.0), np.linspace(13.0, 17.0, 60)))
+    view = View(FAN, view.pose, np.full(181, np.inf, dtype=np.float32), frozenset(), 0.05, wall)
+    here = np.array(((11.7, 15.0),))
+    assert view.passable(here, np.array(((10.5, 15.0),)), 0.5)[0]
+    assert not view.passable(here, np.array(((11.9, 15.4),)), 0.5)[0]
+
+
+def test_afterimage_is_bounded_and_holds_what_left_the_view() -> None:
+    view = look(BLOCKS, 15.0, 9.0, 0.0)
+    memory = Afterimage(3.0, capacity=32)
+    memory.keep(view)
+    assert len(memory.points) == 32
+    turned = Pose(15.0, 9.0, math.pi)
+    assert len(memory.beside(turned, math.pi / 2)) > 0
+    assert len(memory.beside(view.pose, math.pi / 2)) == 0
+
+
+def test_single_precision_distances_agree_with_the_world() -> None:
+    random = generator(3, "test")
+    a, b, points = (random.uniform(200.0, 220.0, (40, 2)) for _ in range(3))
+    exact = segment_distances(points, np.concatenate((a, b), axis=1)).T
+    assert np.sqrt(segment_distances2(a, b, points)) == pytest.approx(exact, abs=1e-4)
+
+
+def test_passage_width_is_the_free_width_between_both_walls() -> None:
+    corridor = field(box(0, 0, 30, 13), box(0, 16, 12, 30), box(12, 15.5, 30, 30), size=30.0)
+    assert passage_width(look(corridor, 10.0, 14.4, 0.0), 4.0) == pytest.approx(2.5, abs=0.05)
+    assert passage_width(look(corridor, 5.0, 14.4, 0.0), 4.0) == pytest.approx(3.0, abs=0.05)
+    assert passage_width(look(field(size=60.0), 30.0, 30.0, 0.0), 4.0) == math.inf

@@ -1,0 +1,165 @@
+"""Whole missions over the real world and radio: election, recovery and arrival (issue 4, must hold)."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import pytest
+
+from onehop import scenario_file
+from onehop.contracts.messages import Action, Outcome
+from onehop.contracts.team import Mode, Status
+from onehop.drive import inline
+from world_server.core.world import World
+
+SCENARIOS = Path(__file__).parents[2] / "scenarios"
+NEXT_PERIOD = 2.0
+OPEN_FIELD = """
+name = "open field"
+seed = 5
+[map]
+width = 120
+height = 60
+[start]
+x = 15
+y = 30
+[goal]
+x = 100
+y = 30
+"""
+
+
+@dataclass
+class Diary:
+    """What the robots said of themselves, tick by tick."""
+
+    seconds: list[float] = field(default_factory=list)
+    statuses: list[dict[int, Status]] = field(default_factory=list)
+
+    def watch(self, world: World, actions: Mapping[int, Action]) -> None:
+        """Called by the driver after every tick."""
+        self.seconds.append(world.time_ns / 1e9)
+        self.statuses.append({i: action.status for i, action in actions.items()})
+
+    def at(self, seconds: float) -> dict[int, Status]:
+        """Statuses at the first tick at or after a time."""
+        return next(s for t, s in zip(self.seconds, self.statuses, strict=True) if t >= seconds)
+
+    def leaders(self, seconds: float) -> list[int]:
+        """Who acts as leader at a time."""
+        return [i for i, status in self.at(seconds).items() if status.leader == i]
+
+
+def fault(kind: str, at: float, *robots: int, **keys: object) -> str:
+    """One fault as an inline table."""
+    more = "".join(f", {key} = {value}" for key, value in keys.items())
+    return f'{{kind = "{kind}", at_s = {at}, robots = {list(robots)}{more}}}'
+
+
+def mission(path: Path, *settings: str, faults: tuple[str, ...] = ()) -> tuple[Outcome, Diary]:
+    """Run a scenario in this process."""
+    every = (*settings, f"faults=[{', '.join(faults)}]") if faults else settings
+    diary = Diary()
+    return inline.run(scenario_file.load(path, every), None, diary.watch), diary
+
+
+@pytest.fixture
+def open_field(tmp_path: Path) -> Path:
+    """A field without obstacles, 85 m to go."""
+    path = tmp_path / "field.toml"
+    path.write_text(OPEN_FIELD)
+    return path
+
+
+def test_everyone_arrives_and_nobody_touches_anything(open_field):
+    outcome, diary = mission(open_field)
+    assert outcome.outcome == "arrived", outcome.reason
+    assert outcome.arrived == (1, 2, 3, 4, 5, 6)
+    assert outcome.collisions == 0
+    assert {status.mode for status in diary.statuses[-1].values()} == {Mode.STOPPED}
+
+
+def test_the_same_mission_twice_is_the_same(open_field):
+    first, second = mission(open_field), mission(open_field)
+    assert first[0] == second[0]
+    assert first[1].statuses == second[1].statuses
+
+
+def test_leader_after_leader_dies_and_the_rest_re_forms_and_arrives(open_field):
+    faults = [fault("kill", 20, 3), fault("kill", 35, 4), fault("kill", 50, 2), fault("kill", 65, 5)]
+    outcome, diary = mission(open_field, faults=tuple(faults))
+    assert outcome.outcome == "arrived", outcome.reason
+    assert outcome.arrived == (1, 6)
+    for died, leader in ((20, 4), (35, 2), (50, 5), (65, 1)):
+        assert diary.leaders(died + 5.0 + 2 * NEXT_PERIOD) == [leader]
+    assert outcome.collisions == 0
+
+
+def test_two_lost_followers_leave_a_diamond(open_field):
+    """Thesis figure 4.21."""
+    outcome, diary = mission(open_field, faults=(fault("kill", 20, 6, 1),))
+    assert {status.shape.value for status in diary.at(35.0).values()} == {"diamond"}
+    assert outcome.arrived == (2, 3, 4, 5)
+
+
+def test_a_cut_makes_two_teams_and_healing_one_again_within_four_periods(open_field):
+    cut = fault("cut", 20, 1, 2, 3, others=[4, 5, 6], duration_s=25)
+    outcome, diary = mission(open_field, faults=(cut,))
+    assert diary.leaders(44.0) == [2, 5]
+    assert {status.members for status in diary.at(44.0).values()} == {(1, 2, 3), (4, 5, 6)}
+    healed = diary.at(45.0 + 4 * NEXT_PERIOD)
+    assert {status.members for status in healed.values()} == {(1, 2, 3, 4, 5, 6)}
+    assert diary.leaders(45.0 + 4 * NEXT_PERIOD) == [3]
+    assert outcome.outcome == "arrived"
+
+
+def test_a_killed_robot_that_restarts_is_in_the_team_at_the_goal(open_field):
+    faults = (fault("kill", 20, 5), fault("restart", 30, 5))
+    outcome, diary = mission(open_field, faults=faults)
+    assert 5 not in diary.at(29.0)
+    assert outcome.arrived == (1, 2, 3, 4, 5, 6)
+
+
+def test_profile_thesis_leader_3_stopped_makes_4_lead_a_wedge(open_field):
+    """Thesis figure 4.22."""
+    settings = ('team.profile="thesis"', "team.leader_timeout=6")
+    outcome, diary = mission(open_field, *settings, faults=(fault("kill", 20, 3),))
+    assert diary.leaders(30.0) == [4]
+    assert {status.shape.value for status in diary.at(30.0).values()} == {"wedge"}
+    assert outcome.arrived == (1, 2, 4, 5, 6)
+
+
+def test_epochs_never_go_back_under_faults(open_field):
+    cut = fault("cut", 20, 1, 2, 3, others=[4, 5, 6], duration_s=25)
+    _, diary = mission(open_field, faults=(cut, fault("hold", 30, 6, duration_s=10)))
+    for before, after in zip(diary.statuses, diary.statuses[1:], strict=False):
+        assert all(after[i].epoch >= before[i].epoch for i in after if i in before)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_a_study_map_is_crossed_without_a_contact(number):
+    outcome, _ = mission(SCENARIOS / f"map{number}.toml", "seed=4")
+    assert outcome.outcome == "arrived", outcome.reason
+    assert outcome.collisions == 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_leaders_die_on_a_study_map_and_the_last_two_arrive(number):
+    faults = [fault("kill", 40, 3), fault("kill", 60, 4), fault("kill", 80, 2), fault("kill", 100, 5)]
+    outcome, diary = mission(SCENARIOS / f"map{number}.toml", "seed=4", faults=tuple(faults))
+    assert outcome.outcome == "arrived", outcome.reason
+    assert outcome.arrived == (1, 6)
+    for died, leader in ((40, 4), (60, 2), (80, 5), (100, 1)):
+        assert diary.leaders(died + 5.0 + 2 * NEXT_PERIOD) == [leader]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("size", "spacing"), [(24, 1.0), (50, 0.8)])
+def test_large_teams_arrive(open_field, size, spacing):
+    settings = (f"team.size={size}", f"team.spacing={spacing}", "team.narrow_spacing=0.6")
+    outcome, _ = mission(open_field, *settings)
+    assert outcome.outcome == "arrived", outcome.reason
+    assert len(outcome.arrived) == size
+    assert outcome.collisions == 0
