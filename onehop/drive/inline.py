@@ -2,6 +2,9 @@
 
 from collections.abc import Callable
 
+from radio_proxy.core.radio import Radio
+from robot_agent.core.robot import Robot
+
 from onehop.contracts import topics
 from onehop.contracts.messages import Action, Outcome, percept
 from onehop.contracts.scenario import robot_briefing
@@ -9,8 +12,6 @@ from onehop.drive.briefings import radio_briefing
 from onehop.drive.codec import encode
 from onehop.drive.journal import Journal, WireMessage
 from onehop.scenario_file import Bundle
-from radio_proxy.core.radio import Radio
-from robot_agent.core.robot import Robot
 from world_server.core.mapfile import load_map
 from world_server.core.world import World
 

@@ -1,4 +1,4 @@
-"""The commands that read a log, as a script sees them: exit status, one JSON object, one line of warning."""
+"""The commands that read a log, as a script sees them: status, one JSON object, one line of warning."""
 
 import json
 import sys

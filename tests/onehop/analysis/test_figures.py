@@ -18,7 +18,7 @@ from onehop.drive.log_reader import LogFile
 def test_neighbouring_robots_are_easy_to_tell_apart() -> None:
     colours = [np.array(rgb(c)) for c in robot_colours(tuple(range(1, 25))).values()]
     for one, other in zip(colours, colours[1:], strict=False):
-        assert np.linalg.norm(one - other) > 0.25
+        assert np.linalg.norm(one - other) > 0.2
 
 
 def test_twenty_four_robots_have_twenty_four_colours() -> None:
