@@ -11,8 +11,9 @@ from mcap.writer import CompressionType, Writer
 class LogCopy:
     """A new MCAP file that takes records of an old one; ids of schemas and channels are its own.
 
-    Used in a with statement. It appears under its name only when it is finished, so it may take the place
-    of the file that it copies.
+    Used in a with statement. It appears under its name only when it is finished, so it may take the
+    place of the file that it copies.
+
     keys: topic of every channel that was taken, by its id in the old file.
     """
 

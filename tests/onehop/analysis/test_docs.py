@@ -7,6 +7,8 @@ import pytest
 
 from onehop.analysis.tables import TABLES
 
+ROW = re.compile(r"^\| (`.*?) \| .*? \| (`.*?)(?: \(.*)? \|$", re.MULTILINE)
+WORDS = re.compile(r"`([\w ]+)`")
 PAGE = Path(__file__).parents[3] / "docs" / "reading-logs.md"
 
 
@@ -21,7 +23,7 @@ def test_the_worked_example_runs(log_path: Path, capsys: pytest.CaptureFixture[s
 def test_every_table_stands_in_the_page_with_its_columns() -> None:
     described = {
         name: columns.split()
-        for names, columns in re.findall(r"^\| (`.*?) \| .*? \| (`.*?)(?: \(.*)? \|$", PAGE.read_text(), re.M)
-        for name, columns in zip(re.findall(r"`(\w+)`", names), re.findall(r"`([\w ]+)`", columns), strict=True)
+        for names, contents in ROW.findall(PAGE.read_text())
+        for name, columns in zip(WORDS.findall(names), WORDS.findall(contents), strict=True)
     }
     assert described == {name: list(columns) for name, (_, _, columns) in TABLES.items()}

@@ -1,5 +1,6 @@
 """What figures are made from: colours, stretches of time, means; and that they are drawn."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +18,7 @@ from onehop.drive.log_reader import LogFile
 
 def test_neighbouring_robots_are_easy_to_tell_apart() -> None:
     colours = [np.array(rgb(c)) for c in robot_colours(tuple(range(1, 25))).values()]
-    for one, other in zip(colours, colours[1:], strict=False):
+    for one, other in pairwise(colours):
         assert np.linalg.norm(one - other) > 0.2
 
 
@@ -49,7 +50,7 @@ def test_stretches_cover_the_time_and_alternate(letters: list[str]) -> None:
     found = spans(times, np.array(letters), gap_s=0.15)
     assert found[0].start_s == times[0]
     assert found[-1].end_s == times[-1]
-    for one, other in zip(found, found[1:], strict=False):
+    for one, other in pairwise(found):
         assert one.end_s == other.start_s
         assert one.what != other.what
 

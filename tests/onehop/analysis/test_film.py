@@ -1,6 +1,7 @@
 """Films: as long as the mission, with robots that move."""
 
 from importlib.util import find_spec
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -21,9 +22,7 @@ def test_a_gif_plays_the_whole_mission_and_moves(log: Log, tmp_path: Path) -> No
     with Image.open(path) as film:
         pages = [np.asarray(page.convert("RGB"), dtype=int) for page in ImageSequence.Iterator(film)]
     assert abs(len(pages) - expected) <= 2
-    changed = [
-        np.abs(one - other).max(axis=2) > 40 for one, other in zip(pages, pages[1:], strict=False)
-    ]
+    changed = [np.abs(one - other).max(axis=2) > 40 for one, other in pairwise(pages)]
     assert sum(mask.any() for mask in changed) > len(pages) // 2
 
 
