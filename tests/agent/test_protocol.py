@@ -203,12 +203,7 @@ def test_foreign_and_hostile_payloads_are_counted_and_ignored():
         (7, encode(Join(5, here))),  # nobody's robot
         (3, b"\xc1\xff"),  # no msgpack at all
         (3, encode(Beacon(Roster(900, (3, 9, 12)), Phase.DRIVING, False, here))),  # strangers listed
-        (
-            3,
-            encode(
-                Command(Order.NEXT, Roster(900, (1, 2, 3, 4, 9)), 1, Phase.FINAL, False, here, (), ())
-            ),
-        ),
+        (3, encode(Command(Order.NEXT, strangers, 1, Phase.FINAL, False, here, (), ()))),
         (5, encode(Beacon(Roster(900, (1, 2, 3)), Phase.DRIVING, False, here))),  # not its leader
         (5, encode(Command(Order.NEXT, usurped, 0, Phase.FINAL, False, here, (), ()))),
         (1, encode(Join(2**31 - 1, here))),  # to a follower: not its business
