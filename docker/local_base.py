@@ -1,21 +1,27 @@
 """Make a base image from this machine's own Python, for where no image registry is reached.
 
-The root file system holds the interpreter that runs this program, its standard library, the packages of
-the project's environment, every shared library that any of these need, and a shell. It is imported as an
-image and passed to the build as BASE.
+The root file system holds the interpreter that runs this program, its standard library, the packages
+that the project needs at run time, pip, every shared library that any of these need, and a shell. It is
+imported as an image and passed to the build as BASE. What nothing needs stays out: storage drivers are
+slow on many small files.
 """
 
+import importlib.metadata
 import io
 import re
 import subprocess
 import sys
 import sysconfig
 import tarfile
+import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 PACKAGES = "/opt/python-packages"
-_SKIPPED = {"__pycache__", "test", "tests", "idlelib", "turtledemo", "ensurepip", "tkinter"}
+_SKIPPED = {
+    "__pycache__", "test", "tests", "idlelib", "turtledemo", "ensurepip", "tkinter", "lib2to3",
+    "site-packages", "dist-packages", "sample_data", "include",
+}  # fmt: skip
 _LIBRARY = re.compile(r"(/\S+) \(0x")
 
 
@@ -23,9 +29,8 @@ def main() -> None:
     image = sys.argv[1]
     interpreter = Path(sys.executable).resolve()
     standard = Path(sysconfig.get_path("stdlib"))
-    packages = Path(sysconfig.get_path("purelib"))
-    trees = [(path, str(path)) for path in _files(standard) if packages not in path.parents]
-    trees += [(path, f"{PACKAGES}/{path.relative_to(packages)}") for path in _files(packages)]
+    trees = [(path, str(path)) for path in _standard_library(standard)]
+    trees += [(path, f"{PACKAGES}/{name}") for path, name in _packages()]
     binaries = [path for path, _ in trees if ".so" in path.name]
     programs = [interpreter, Path("/bin/sh").resolve()]
     command = ["docker", "import", "--change", f"ENV PYTHONPATH={PACKAGES}"]
@@ -49,12 +54,38 @@ def main() -> None:
     sys.exit(importing.returncode)
 
 
-def _files(top: Path) -> Iterator[Path]:
+def _standard_library(top: Path) -> Iterator[Path]:
     for path in sorted(top.rglob("*")):
         inside = path.relative_to(top).parts
-        hidden = _SKIPPED.intersection(inside) if top == Path(sysconfig.get_path("stdlib")) else ()
-        if path.is_file() and "__pycache__" not in inside and not hidden:
+        if path.is_file() and not _SKIPPED.intersection(inside):
             yield path
+
+
+def _packages() -> Iterator[tuple[Path, str]]:
+    """Files of pip and of everything that the project requires, with their names below PACKAGES."""
+    project = tomllib.loads(Path("pyproject.toml").read_text())["project"]
+    wanted = ["pip", *map(_name, project["dependencies"])]
+    seen: set[str] = set()
+    while wanted:
+        name = wanted.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        try:
+            distribution = importlib.metadata.distribution(name)
+        except importlib.metadata.PackageNotFoundError:
+            continue  # required on other platforms only
+        wanted += [_name(text) for text in distribution.requires or () if "extra ==" not in text]
+        for file in distribution.files or ():
+            path = Path(str(distribution.locate_file(file)))
+            if path.is_file() and ".." not in file.parts and not _SKIPPED.intersection(file.parts):
+                yield path, str(file)
+
+
+def _name(requirement: str) -> str:
+    match = re.match(r"[A-Za-z0-9._-]+", requirement)
+    assert match is not None, requirement
+    return match.group(0)
 
 
 def _libraries(binaries: Iterable[Path]) -> set[str]:

@@ -1,8 +1,8 @@
 """Copy the records of a log into a new file without understanding them."""
 
-from collections.abc import Mapping
+import os
 from pathlib import Path
-from typing import Any
+from typing import Any, Self
 
 from mcap.records import Attachment, Channel, Header, Message, Metadata, Schema
 from mcap.writer import CompressionType, Writer
@@ -11,11 +11,15 @@ from mcap.writer import CompressionType, Writer
 class LogCopy:
     """A new MCAP file that takes records of an old one; ids of schemas and channels are its own.
 
+    Used in a with statement. It appears under its name only when it is finished, so it may take the
+    place of the file that it copies.
+
     keys: topic of every channel that was taken, by its id in the old file.
     """
 
     def __init__(self, path: Path, origin: str) -> None:
-        self._stream = path.open("wb")
+        self._path, self._draft = path, path.with_name(path.name + ".part")
+        self._stream = self._draft.open("wb")
         self.writer = Writer(self._stream, chunk_size=1 << 20, compression=CompressionType.ZSTD)
         self._origin = origin
         self._schemas: dict[int, int] = {0: 0}
@@ -41,9 +45,8 @@ class LogCopy:
 
     def _take_channel(self, record: Channel) -> None:
         self.keys[record.id] = record.topic
-        metadata: Mapping[str, str] = record.metadata
         self._channels[record.id] = self.writer.register_channel(
-            record.topic, record.message_encoding, self._schemas[record.schema_id], dict(metadata)
+            record.topic, record.message_encoding, self._schemas[record.schema_id], record.metadata
         )
 
     def take_message(self, message: Message) -> None:
@@ -53,7 +56,16 @@ class LogCopy:
             message.publish_time, message.sequence,
         )  # fmt: skip
 
-    def close(self) -> None:
-        """Write summary and index."""
+    def finish(self) -> None:
+        """Write summary and index; the file takes its name."""
         self.writer.finish()  # type: ignore[no-untyped-call]
         self._stream.close()
+        os.replace(self._draft, self._path)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        """What was not finished leaves no trace."""
+        self._stream.close()
+        self._draft.unlink(missing_ok=True)

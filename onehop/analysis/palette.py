@@ -14,8 +14,8 @@ OKABE_ITO = (
     "#CC79A7",  # reddish purple
     "#56B4E9",  # sky blue
     "#D55E00",  # vermilion
-    "#B8A800",  # yellow, darkened
     "#5B5B5B",  # grey in place of black, which the figures' ink uses
+    "#B8A800",  # yellow, darkened
 )
 
 INK = "#222222"

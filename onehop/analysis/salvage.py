@@ -5,7 +5,7 @@ The last tick of a torn log is given up unless everything that world, radio and 
 a tick is there; nothing before it is ever left out.
 """
 
-import os
+import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import Any
 
 import msgpack
 from mcap.exceptions import EndOfFile, McapError
-from mcap.records import Footer, Message, Metadata
+from mcap.records import Message, Metadata
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
@@ -50,14 +50,12 @@ class _Tail:
 
     def records(self) -> Iterator[Any]:
         with self._path.open("rb") as stream:
-            sound = False
             try:
                 for record in StreamReader(stream, validate_crcs=True).records:
                     yield record
                     self.good = stream.tell()
-                    sound = sound or isinstance(record, Footer)
-            except EndOfFile:
-                self.damage = "" if sound else "the file ends before the log does"
+            except (EndOfFile, struct.error):  # the latter where an index is torn
+                self.damage = "the file ends before the log does"
             except (McapError, ValueError, ZstdError) as error:
                 self.damage = f"damaged near byte {stream.tell()}: {error}"
 
@@ -65,8 +63,8 @@ class _Tail:
 class _Rescue:
     """Copies records into a new file; whole ticks only."""
 
-    def __init__(self, out: Path) -> None:
-        self._copy = LogCopy(out, "salvaged")
+    def __init__(self, copy: LogCopy) -> None:
+        self._copy = copy
         self._pending: list[Message] = []
         self.last_tick = -1
         self.messages = 0
@@ -95,7 +93,7 @@ class _Rescue:
         """Close the file; returns how many messages of an unfinished last tick were given up."""
         if not torn or self._is_whole():
             self._write_pending()
-        self._copy.close()
+        self._copy.finish()
         return len(self._pending)
 
     def _is_whole(self) -> bool:
@@ -108,16 +106,13 @@ class _Rescue:
 
 
 def salvage(torn: Path, out: Path) -> Salvage:
-    """Write a sound log to `out`. Raises LogError when `torn` is no log of ours at all.
-
-    The new file appears under its name only when it is whole.
-    """
+    """Write a sound log to `out`. Raises LogError when `torn` is no log of ours at all."""
     LogFile(torn)
-    tail, draft = _Tail(torn), out.with_name(out.name + ".part")
-    rescue = _Rescue(draft)
-    for record in tail.records():
-        rescue.take(record)
-    given_up = rescue.finish(torn=bool(tail.damage))
-    os.replace(draft, out)
+    tail = _Tail(torn)
+    with LogCopy(out, "salvaged") as copy:
+        rescue = _Rescue(copy)
+        for record in tail.records():
+            rescue.take(record)
+        given_up = rescue.finish(torn=bool(tail.damage))
     unread = torn.stat().st_size - tail.good if tail.damage else 0
     return Salvage(rescue.last_tick, rescue.messages, given_up, unread, tail.damage, rescue.ended)

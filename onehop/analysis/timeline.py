@@ -59,6 +59,30 @@ def reigns(status: Table) -> list[Reign]:
     return found
 
 
+def main_line(status: Table) -> list[Reign]:
+    """Who led most of the team at each moment: one line of rosters even while the team is split.
+
+    The largest roster that its leader acts on counts; of equal ones the one of the lowest leader id.
+    """
+    ruling = status.where(status["robot"] == status["leader"])
+    size = np.array([len(members) for members in ruling["members"]], dtype=np.int64)
+    order = np.lexsort((ruling["robot"], -size, ruling["tick"]))
+    _, first = np.unique(ruling["tick"][order], return_index=True)
+    found: list[Reign] = []
+    for row in order[first].tolist():
+        reign = Reign(
+            float(ruling["time_s"][row]), int(ruling["robot"][row]), int(ruling["epoch"][row]),
+            ruling["members"][row], str(ruling["shape"][row]),
+        )  # fmt: skip
+        if not found or _same_rule(found[-1]) != _same_rule(reign):
+            found.append(reign)
+    return found
+
+
+def _same_rule(reign: Reign) -> tuple[int, int, tuple[int, ...], str]:
+    return reign.leader, reign.epoch, reign.members, reign.shape
+
+
 def tick_step(table: Table) -> int:
     """Ticks between two rows of the same thing."""
     ticks = np.unique(table["tick"])

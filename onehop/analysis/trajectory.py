@@ -1,6 +1,7 @@
 """One picture of a mission: the map, everyone's path, the formation every 20 s, and what went wrong."""
 
 from pathlib import Path
+from textwrap import fill
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,7 +15,7 @@ from onehop.analysis.ground import draw_ground
 from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, INK, robot_colours
 from onehop.analysis.tables import Table, build
-from onehop.analysis.timeline import Departure, departures, describe_fault, reigns
+from onehop.analysis.timeline import Departure, departures, describe_fault, main_line
 from onehop.contracts.messages import Reign
 from onehop.drive.log_reader import LogFile
 
@@ -23,6 +24,9 @@ SNAPSHOT_S = 20.0
 
 _SAMPLE_S = 0.5
 """Status is looked at this often [s]; poses are taken from every tick."""
+
+_NAMED_S = 2.0
+"""A lead that lasted less has a ring but no name [s]."""
 
 _HALO = [withStroke(linewidth=2.5, foreground="white")]
 
@@ -60,7 +64,7 @@ def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
         _draw_departure(axes, departure, colours[departure.robot])
     for x, y in zip(tables["contacts"]["x"], tables["contacts"]["y"], strict=True):
         axes.plot(x, y, marker="P", color=BAD, markersize=7, zorder=8)
-    _draw_reigns(axes, poses, reigns(status), colours)
+    _draw_reigns(axes, poses, main_line(status), colours)
     axes.legend(
         handles=_legend(log, gone, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
         frameon=False, fontsize=9, borderaxespad=0.0,
@@ -170,24 +174,32 @@ def _draw_departure(axes: Axes, departure: Departure, colour: str) -> None:
     )  # fmt: skip
 
 
-def _draw_reigns(axes: Axes, poses: Table, rosters: list[Reign], colours: dict[int, str]) -> None:
-    """A ring where somebody takes the lead over from another."""
-    previous = None
-    for reign in rosters:
-        if previous not in (None, reign.leader):
-            own = poses.of(reign.leader)
-            row = min(int(np.searchsorted(own["time_s"], reign.at_s)), len(own) - 1)
-            spot = float(own["x"][row]), float(own["y"][row])
-            axes.plot(
-                *spot, marker="o", markersize=14, markerfacecolor="none", markeredgewidth=2.2,
-                markeredgecolor=colours[reign.leader], zorder=7,
-            )  # fmt: skip
-            axes.annotate(
-                f"{reign.leader} leads, {reign.at_s:.0f} s", spot, textcoords="offset points",
-                xytext=(-12, 9), ha="right", fontsize=9, fontweight="bold", color=INK, zorder=9,
-                path_effects=_HALO,
-            )  # fmt: skip
+def _draw_reigns(axes: Axes, poses: Table, line: list[Reign], colours: dict[int, str]) -> None:
+    """A ring where somebody takes the lead over from another; those that lasted have their name."""
+    ends = [reign.at_s for reign in line[1:]] + [np.inf]
+    previous: int | None = None
+    named: list[tuple[float, float]] = []
+    for reign, end_s in zip(line, ends, strict=True):
+        if previous in (None, reign.leader):
+            previous = reign.leader
+            continue
         previous = reign.leader
+        own = poses.of(reign.leader)
+        row = min(int(np.searchsorted(own["time_s"], reign.at_s)), len(own) - 1)
+        spot = float(own["x"][row]), float(own["y"][row])
+        axes.plot(
+            *spot, marker="o", markersize=14, markerfacecolor="none", markeredgewidth=2.2,
+            markeredgecolor=colours[reign.leader], zorder=7,
+        )  # fmt: skip
+        crowded = any(abs(spot[0] - x) < 12.0 and abs(spot[1] - y) < 3.0 for x, y in named)
+        if end_s - reign.at_s < _NAMED_S or crowded:
+            continue
+        named.append(spot)
+        axes.annotate(
+            f"{reign.leader} leads, {reign.at_s:.0f} s", spot, textcoords="offset points",
+            xytext=(-12, 9), ha="right", fontsize=9, fontweight="bold", color=INK, zorder=9,
+            path_effects=_HALO,
+        )  # fmt: skip
 
 
 def _legend(log: Log, gone: list[Departure], colours: dict[int, str]) -> list[Line2D]:
@@ -196,7 +208,7 @@ def _legend(log: Log, gone: list[Departure], colours: dict[int, str]) -> list[Li
         lost = {
             entry["robot"]: f"{entry['why']}, {entry['at_s']:.0f} s" for entry in log.summary["lost"]
         }
-        fates = {**dict.fromkeys(log.summary["arrived"], "arrived"), **fates, **lost}
+        fates = {**fates, **lost, **dict.fromkeys(log.summary["arrived"], "arrived")}
     handles = [
         Line2D(
             [], [], color=colour, marker=(3, 0, -90), markersize=8, linewidth=1.5,
@@ -215,7 +227,7 @@ def _legend(log: Log, gone: list[Departure], colours: dict[int, str]) -> list[Li
             marker="x",
             markersize=5,
             color=BAD,
-            label=f"{f.at_s:g} s: {describe_fault(f)}",
+            label=fill(f"{f.at_s:g} s: {describe_fault(f)}", 30),
         )
         for f in log.scenario.faults
     ]

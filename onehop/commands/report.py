@@ -1,6 +1,7 @@
 """`onehop report`: a mission on one page, its figures, and a film if wanted."""
 
 from pathlib import Path
+from typing import Any
 
 from onehop.analysis.report.page import write_report
 from onehop.commands.opening import open_with_warning
@@ -11,8 +12,8 @@ def report(path: Path, out: Path | None, film: str | None, as_json: bool) -> int
     """Write everything into a folder, by default `report` beside the log; returns the exit status."""
     log = open_with_warning(path)
     folder = out or path.parent / "report"
-    page = write_report(log, folder)
-    written = {"report": str(page), "figures": [str(p) for p in sorted(folder.glob("*.png"))]}
+    page, figures = write_report(log, folder)
+    written: dict[str, Any] = {"report": str(page), "figures": [str(figure) for figure in figures]}
     if film is not None:
         from onehop.analysis.film import write_film
 
@@ -23,7 +24,7 @@ def report(path: Path, out: Path | None, film: str | None, as_json: bool) -> int
         emit_json(written)
     else:
         print(f"report   {page}")
-        print(f"figures  {', '.join(Path(p).name for p in written['figures'])} (and .svg)")
+        print(f"figures  {', '.join(figure.name for figure in figures)} (and .svg)")
         if film is not None:
             print(f"film     {written['film']}")
     return 0

@@ -15,6 +15,9 @@ from onehop.analysis.report.material import Material
 DPI = 110
 """Resolution of the PNG files: 10 inches are 1100 pixels."""
 
+_NAME_WIDTH = 0.07
+"""Room that the name of a turn takes, as a share of the time axis; where it lacks, there is no name."""
+
 _STYLE = {
     "axes.spines.top": False,
     "axes.spines.right": False,
@@ -52,17 +55,20 @@ def mark_turns(axes: Axes, material: Material, named: bool = False) -> None:
     """Lines where robots left and where the lead passed on, and red shade while a fault was in force."""
     for span in material.faults:
         axes.axvspan(span.start_s, span.end_s, color="#F3E3E3", linewidth=0, zorder=0)
-    for one in material.gone:
-        axes.axvline(one.at_s, color=BAD, linewidth=1.0, linestyle="--", zorder=1)
-        if named:
-            _name(axes, one.at_s, f"{one.robot} gone", BAD)
-    previous = None
-    for reign in material.reigns:
-        if previous not in (None, reign.leader):
-            axes.axvline(reign.at_s, color=INK, linewidth=0.8, linestyle=":", zorder=1)
-            if named:
-                _name(axes, reign.at_s, f"{reign.leader} leads", INK)
-        previous = reign.leader
+    turns = [(one.at_s, f"{one.robot} gone", BAD) for one in material.gone]
+    turns += [
+        (after.at_s, f"{after.leader} leads", INK)
+        for before, after in zip(material.line, material.line[1:], strict=False)
+        if before.leader != after.leader
+    ]
+    room = _NAME_WIDTH * material.end_s
+    free_from = {BAD: -room, INK: -room}
+    for at_s, text, colour in sorted(turns):
+        dash = "--" if colour == BAD else ":"
+        axes.axvline(at_s, color=colour, linewidth=0.9, linestyle=dash, zorder=1)
+        if named and at_s >= free_from[colour]:
+            free_from[colour] = at_s + room
+            _name(axes, at_s, text, colour)
 
 
 def _name(axes: Axes, at_s: float, text: str, colour: str) -> None:

@@ -6,7 +6,7 @@ from onehop.analysis.frames import Frame, join
 from onehop.analysis.log import Log
 from onehop.analysis.palette import robot_colours
 from onehop.analysis.tables import Table
-from onehop.analysis.timeline import Departure, Span, departures, fault_spans, reigns
+from onehop.analysis.timeline import Departure, Span, departures, fault_spans, main_line, reigns
 from onehop.contracts.messages import Reign
 
 _TABLES = (
@@ -17,13 +17,18 @@ _TABLES = (
 
 @dataclass(frozen=True)
 class Material:
-    """One mission, taken apart. end_s: time of the last tick in the log [s]."""
+    """One mission, taken apart.
+
+    reigns: every roster that was acted on; line: of those, who led most of the team. end_s: time of the
+    last tick in the log [s].
+    """
 
     log: Log
     tables: dict[str, Table]
     colours: dict[int, str]
     gone: list[Departure]
     reigns: list[Reign]
+    line: list[Reign]
     faults: list[Span]
     frames: list[Frame]
     period_s: float
@@ -53,6 +58,7 @@ def gather(log: Log) -> Material:
         colours=robot_colours(log.robots),
         gone=departures(poses, tables["departures"]),
         reigns=reigns(tables["status"]),
+        line=main_line(tables["status"]),
         faults=fault_spans(tables, period_s),
         frames=list(join(tables["verdicts"], tables["offers"])),
         period_s=period_s,

@@ -22,8 +22,8 @@ _LOOKS: dict[str, tuple[float, str, str]] = {
     Mode.LEADING: (1.0, "", "leading"),
     Mode.ALONE: (1.0, "xx", "alone"),
     Mode.FOLLOWING: (0.32, "", "following"),
-    Mode.NARROW: (0.32, "....", "following in column"),
-    Mode.BORDER: (0.62, "", "around an obstacle"),
+    Mode.NARROW: (0.32, "....", "in column"),
+    Mode.BORDER: (0.62, "", "around obstacle"),
     Mode.SETUP: (0.10, "", "setup"),
     Mode.STOPPED: (0.10, "||", "stopped"),
 }
@@ -98,7 +98,7 @@ def _look(mode: str, colour: str) -> tuple[tuple[float, float, float, float], st
 
 
 def _draw_reigns(axes: Axes, material: Material, rows: int) -> None:
-    reigns = material.reigns
+    reigns = material.line
     ends = [*(reign.at_s for reign in reigns[1:]), material.end_s]
     times = np.array([reign.at_s for reign in reigns])
     for names, row in (
@@ -123,10 +123,10 @@ def _draw_band(axes: Axes, span: Span, row: float, face: str, ink: str) -> None:
         [(span.start_s, length)], (row - _HEIGHT / 2, _HEIGHT), facecolor=face, edgecolor="white",
         linewidth=0.8, zorder=3,
     )  # fmt: skip
-    if length < len(span.what) * _LETTER * axes.get_xlim()[1]:
-        return
+    room = length / (_LETTER * axes.get_xlim()[1])
+    name = next((text for text in (span.what, span.what.split(" at ")[0]) if len(text) <= room), "")
     axes.text(
-        span.start_s + length / 2, row, span.what, ha="center", va="center", fontsize=8, color=ink,
+        span.start_s + length / 2, row, name, ha="center", va="center", fontsize=8, color=ink,
         clip_on=True, zorder=4, fontweight="bold" if ink == "white" else "normal",
     )  # fmt: skip
 
@@ -166,6 +166,6 @@ def _explain_looks(figure: Figure, material: Material, seen: set[str]) -> None:
     if material.gone:
         handles.append(Patch(facecolor=BAD, label="gone"))
     figure.legend(
-        handles=handles, loc="upper left", bbox_to_anchor=(0.08, 1.0), ncols=9,
-        frameon=False, fontsize=8, handlelength=1.6, columnspacing=1.2,
+        handles=handles, loc="upper left", bbox_to_anchor=(0.08, 1.0), ncols=12,
+        frameon=False, fontsize=8, handlelength=1.6, columnspacing=0.8,
     )  # fmt: skip

@@ -6,6 +6,7 @@ import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -43,15 +44,22 @@ class _Picture:
     path: Path
 
 
-def write_report(log: Log, folder: Path) -> Path:
-    """Write report.html and the figures into a folder; returns the page. Raises LogError."""
+class Written(NamedTuple):
+    """Files of a report: the page, and each figure as PNG; its SVG has the same stem."""
+
+    page: Path
+    figures: tuple[Path, ...]
+
+
+def write_report(log: Log, folder: Path) -> Written:
+    """Write report.html and the figures into a folder. Raises LogError."""
     folder.mkdir(parents=True, exist_ok=True)
     material = gather(log)
     with styled():
         pictures = list(_pictures(material, folder))
     page = folder / "report.html"
     page.write_text(_page(material, pictures), encoding="utf-8")
-    return page
+    return Written(page, tuple(picture.path for picture in pictures))
 
 
 def _pictures(material: Material, folder: Path) -> Iterator[_Picture]:
@@ -71,8 +79,8 @@ def _pictures(material: Material, folder: Path) -> Iterator[_Picture]:
         yield _Picture(
             f"How robot {after.leader} came to lead at {after.at_s:.1f} s",
             "Time runs downwards, one line a robot; an arrow is a message in its sender's colour, a "
-            "broken red one a message that was lost. Nobody votes: the same list of ids gives everyone the same "
-            "leader.",
+            "broken red one a message that was lost. Nobody votes: the same list of ids gives everyone "
+            "the same leader.",
             save(sequence_chart(material, before, after), folder, f"election-{number}"),
         )
     yield _Picture(
@@ -83,8 +91,8 @@ def _pictures(material: Material, folder: Path) -> Iterator[_Picture]:
     )
     yield _Picture(
         "The radio",
-        "Left: messages that did not arrive, by receiver and reason. Right: what was handed to the radio, "
-        "and what routing added.",
+        "Left: messages that did not arrive, by receiver and reason. Right: what was handed to the "
+        "radio, and what routing added.",
         save(radio_chart(material), folder, "radio"),
     )
 

@@ -61,7 +61,15 @@ def _draw_losses(axes: Axes, material: Material) -> None:
     axes.set_ylabel("messages lost")
     axes.grid(axis="x", visible=False)
     if base.any():
-        axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=3, frameon=False, fontsize=8)
+        axes.legend(
+            loc="lower left",
+            bbox_to_anchor=(-0.03, 1.0),
+            ncols=5,
+            frameon=False,
+            fontsize=8,
+            columnspacing=1.0,
+            handlelength=1.2,
+        )
     else:
         axes.set_title("no message was lost", loc="left", fontsize=9)
 
@@ -90,7 +98,15 @@ def _draw_bytes(axes: Axes, material: Material) -> None:
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("time [s]")
     axes.set_ylabel("offered since the start [kB]")
-    axes.legend(loc="lower left", bbox_to_anchor=(-0.01, 1.0), ncols=3, frameon=False, fontsize=8)
+    axes.legend(
+        loc="lower left",
+        bbox_to_anchor=(-0.03, 1.0),
+        ncols=5,
+        frameon=False,
+        fontsize=8,
+        columnspacing=1.0,
+        handlelength=1.2,
+    )
 
 
 def _first_of_each(source: np.ndarray, message: np.ndarray) -> np.ndarray:

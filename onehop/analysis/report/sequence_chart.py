@@ -38,10 +38,10 @@ class _Row:
 
 
 def elections(material: Material) -> list[tuple[Reign, Reign]]:
-    """Each change of the lead as (last roster of the old leader, first roster of the new one)."""
+    """Each change of who leads most of the team: (last roster of the old leader, first of the new)."""
     return [
         (before, after)
-        for before, after in zip(material.reigns, material.reigns[1:], strict=False)
+        for before, after in zip(material.line, material.line[1:], strict=False)
         if before.leader != after.leader
     ]
 

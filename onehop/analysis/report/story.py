@@ -1,10 +1,14 @@
 """A mission told in sentences: what happened, when, and why, for somebody who was not there."""
 
 from collections.abc import Iterator
+from itertools import groupby
 from typing import Any, NamedTuple
 
 from onehop.analysis.report.material import Material
 from onehop.contracts.messages import Reign
+
+_TOLD_LEADERS = 6
+"""A longer line of leaders is only counted."""
 
 
 class Event(NamedTuple):
@@ -52,10 +56,12 @@ def summary_sentence(material: Material) -> str:
         for one in summary["lost"]
         if one["why"] != "did not arrive"
     )
-    leaders = list(dict.fromkeys(reign.leader for reign in material.reigns))
+    leaders = [leader for leader, _ in groupby(reign.leader for reign in material.line)]
     led = ""
-    if len(leaders) > 1:
+    if 1 < len(leaders) <= _TOLD_LEADERS:
         led = " The lead passed from robot " + " to ".join(map(str, leaders)) + "."
+    elif len(leaders) > _TOLD_LEADERS:
+        led = f" The lead changed {len(leaders) - 1} times."
     reason = "" if summary["outcome"] == "arrived" else f" Reason: {summary['reason']}."
     return f"{sentence}{counted}{': ' + lost if lost else ''}.{led}{reason}"
 
@@ -173,7 +179,7 @@ def _successor(reigns: list[Reign], at_s: float, leader: int) -> Reign | None:
 
 def _departures(material: Material) -> Iterator[Event]:
     for one in material.gone:
-        leads = [reign.leader for reign in material.reigns if reign.at_s < one.at_s]
+        leads = [reign.leader for reign in material.line if reign.at_s < one.at_s]
         part = ", the leader," if leads and leads[-1] == one.robot else ""
         yield Event(one.at_s, 2, f"Robot {one.robot}{part} is gone: {one.why}.")
 

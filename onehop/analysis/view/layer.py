@@ -5,7 +5,7 @@ log time of its tick. A layer that is there already is replaced.
 """
 
 import math
-import os
+import struct
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -48,11 +48,17 @@ _LEVELS = {
 def write_view(log: Log, out: Path) -> dict[str, int]:
     """Write log and viewer layer to `out`, which may be the log itself; returns messages by topic.
 
-    The new file takes its name only when it is whole. Whatever the log was, the copy is sound.
+    Whatever the log was, the copy is sound.
     """
-    draft = out.with_name(out.name + ".part")
-    copy = LogCopy(draft, "with viewer layer")
-    layer = _Layer(log, copy)
+    with LogCopy(out, "with viewer layer") as copy:
+        layer = _Layer(log, copy)
+        _copy_with(layer, log, copy)
+        copy.finish()
+    return dict(sorted(layer.counts.items()))
+
+
+def _copy_with(layer: "_Layer", log: Log, copy: LogCopy) -> None:
+    """Everything of the log but an old layer, and after each tick what the new layer makes of it."""
     tick, messages = -1, list[Message]()
     for record in _records(log.path):
         if isinstance(record, Message):
@@ -69,16 +75,13 @@ def write_view(log: Log, out: Path) -> dict[str, int]:
                 messages = []
             copy.take(record)
     layer.add(tick, messages)
-    copy.close()
-    os.replace(draft, out)
-    return dict(sorted(layer.counts.items()))
 
 
 def _records(path: Path) -> Iterator[Any]:
     with path.open("rb") as stream:
         try:
             yield from StreamReader(stream, validate_crcs=True).records
-        except EndOfFile:
+        except (EndOfFile, struct.error):  # the latter where an index is torn
             return
 
 

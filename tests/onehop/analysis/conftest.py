@@ -29,15 +29,13 @@ KILLED_S, HELD_S, HOLD_S = 4.0, 2.0, 1.5
 def scenario() -> Scenario:
     return Scenario(
         name="small",
-        goal=GoalSection(24.0, 10.0),
-        map=MapSection(
-            width=30.0, height=20.0, obstacles=(((14.0, 16.0), (17.0, 16.0), (17.0, 19.0)),)
-        ),
+        goal=GoalSection(19.0, 10.0),
+        map=MapSection(width=30.0, height=20.0, obstacles=(((14.0, 16.0), (17.0, 16.0), (17.0, 19.0)),)),
         start=StartSection(
             poses=((4.0, 7.0, 0.0), (7.0, 10.0, 0.0), (4.0, 13.0, 0.0), (1.5, 10.0, 0.0))
         ),
         team=TeamSection(size=4, next_period=0.5, leader_timeout=1.2),
-        clock=ClockSection(limit_s=12.0),
+        clock=ClockSection(limit_s=30.0),
         faults=(
             FaultSection("hold", HELD_S, robots=(HELD,), duration_s=HOLD_S),
             FaultSection("kill", KILLED_S, robots=(LEADER,)),

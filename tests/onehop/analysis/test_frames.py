@@ -6,9 +6,9 @@ from onehop.analysis import Log
 from onehop.analysis.frames import frames
 from onehop.analysis.readable import kind_of, opened
 from onehop.analysis.timeline import reigns
+from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Fate
 from robot_agent.core.messages import Ack, encode
-from onehop.contracts.geometry import Pose
 
 from .conftest import LEADER, SUCCESSOR
 

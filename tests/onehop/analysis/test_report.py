@@ -1,0 +1,103 @@
+"""The report: a page that opens alone and says what happened."""
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import pytest
+from PIL import Image
+
+from onehop.analysis import Log, open_log
+from onehop.analysis.report.material import gather
+from onehop.analysis.report.page import write_report
+from onehop.analysis.report.sequence_chart import elections
+from onehop.analysis.report.story import story, summary_sentence
+
+from .conftest import HELD, KILLED_S, LEADER, SUCCESSOR
+
+VOID = {"meta", "img", "br"}
+
+
+class Balance(HTMLParser):
+    """Every element that is opened is closed, in order."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:  # noqa: ARG002
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def folder(log: Log, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("report")
+    write_report(log, folder)
+    return folder
+
+
+@pytest.mark.slow
+def test_the_page_needs_nothing_but_itself(folder: Path) -> None:
+    page = (folder / "report.html").read_text()
+    sources = re.findall(r'(?:src|href)="([^"]{0,40})', page)
+    assert sources
+    assert all(source.startswith("data:image/png;base64,") for source in sources)
+    assert "http://" not in page
+    assert "https://" not in page
+    assert "@import" not in page
+
+
+@pytest.mark.slow
+def test_the_page_is_well_formed(folder: Path) -> None:
+    balance = Balance()
+    balance.feed((folder / "report.html").read_text())
+    balance.close()
+    assert balance.open == []
+
+
+@pytest.mark.slow
+def test_the_dead_robot_is_struck_through_and_no_other(folder: Path) -> None:
+    page = (folder / "report.html").read_text()
+    assert re.findall(r"<s>([^<]*)</s>", page) == [f"robot {LEADER}"]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("stem", ["timeline", "trajectory", "followers", "radio", "election-1"])
+def test_every_figure_is_there_as_png_and_svg(folder: Path, stem: str) -> None:
+    with Image.open(folder / f"{stem}.png") as figure:
+        width, height = figure.size
+    assert width > 900
+    assert height > 150
+    assert "<svg" in (folder / f"{stem}.svg").read_text()[:1000]
+
+
+def test_the_story_tells_death_election_and_fault_in_order(log: Log) -> None:
+    events = story(gather(log))
+    texts = [event.text for event in events]
+    assert [event.at_s for event in events] == sorted(event.at_s for event in events)
+    death = next(n for n, text in enumerate(texts) if f"Robot {LEADER}, the leader, is gone" in text)
+    election = next(n for n, text in enumerate(texts) if f"robot {SUCCESSOR}, median of 1, 3, 4" in text)
+    fault = next(n for n, text in enumerate(texts) if f"Fault: hold {HELD}" in text)
+    assert fault < death < election
+    assert events[death].at_s == pytest.approx(KILLED_S, abs=0.11)
+
+
+def test_one_sentence_says_the_outcome_and_who_led(log: Log) -> None:
+    sentence = summary_sentence(gather(log))
+    assert "reached the goal" in sentence
+    assert f"robot {LEADER} was lost" in sentence
+    assert f"from robot {LEADER} to {SUCCESSOR}" in sentence
+
+
+def test_a_change_of_shape_is_no_election(log: Log) -> None:
+    assert [(a.leader, b.leader) for a, b in elections(gather(log))] == [(LEADER, SUCCESSOR)]
+
+
+def test_a_log_without_an_end_is_told_as_such(log_path: Path, tmp_path: Path) -> None:
+    torn = tmp_path / "torn.mcap"
+    torn.write_bytes(log_path.read_bytes()[: log_path.stat().st_size // 2])
+    assert "before the mission did" in summary_sentence(gather(open_log(torn)))

@@ -1,0 +1,133 @@
+"""The commands that read a log, as a script sees them: status, one JSON object, one line of warning."""
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from onehop.cli import main
+from onehop.drive.log_reader import LogFile
+from onehop.drive.log_writer import LogWriter
+from tests.onehop.scenes import field, log_of
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("log")
+    log_of(field(folder, "clock.limit_s=4"), folder / "unflushed.mcap")
+    source, path = LogFile(folder / "unflushed.mcap"), folder / "mission.mcap"
+    writer = LogWriter(path, source.bundle, "inline")
+    for tick in source.ticks():
+        writer.write(tick.tick, tick.messages)
+        if tick.tick % 10 == 0:
+            writer.flush()
+    writer.close(source.summary)
+    return path
+
+
+@pytest.fixture
+def torn(recorded: Path, tmp_path: Path) -> Path:
+    path = tmp_path / "torn.mcap"
+    path.write_bytes(recorded.read_bytes()[: recorded.stat().st_size // 2])
+    return path
+
+
+class Answer:
+    """What a command left behind."""
+
+    def __init__(self, status: int, out: str, err: str) -> None:
+        self.status, self.out, self.err = status, out, err
+
+    @property
+    def json(self) -> Any:
+        return json.loads(self.out)
+
+
+@pytest.fixture
+def onehop(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Any:
+    def call(*arguments: object) -> Answer:
+        monkeypatch.setattr(sys, "argv", ["onehop", *map(str, arguments)])
+        with pytest.raises(SystemExit) as left:
+            main()
+        captured = capsys.readouterr()
+        return Answer(int(left.value.code or 0), captured.out, captured.err)
+
+    return call
+
+
+def test_diff_of_a_log_with_itself_is_0(onehop: Any, recorded: Path) -> None:
+    answer = onehop("diff", recorded, recorded, "--json")
+    assert answer.status == 0
+    assert answer.json["same"] is True
+    assert answer.json["first"] is None
+
+
+def test_diff_of_two_logs_is_1_and_names_the_end_of_the_shorter(
+    onehop: Any, recorded: Path, torn: Path
+) -> None:
+    answer = onehop("diff", recorded, torn, "--json")
+    assert answer.status == 1
+    assert answer.json["first"]["field"] == "end of the log"
+
+
+def test_a_torn_log_is_read_with_one_line_of_warning(onehop: Any, torn: Path) -> None:
+    answer = onehop("explain", torn, "--robot", 1, "--at", 1, "--json")
+    assert answer.status == 0
+    assert answer.json["robot"] == 1
+    assert answer.err.count("\n") == 1
+    assert "is torn" in answer.err
+
+
+def test_explain_speaks_to_people(onehop: Any, recorded: Path) -> None:
+    answer = onehop("explain", recorded, "--robot", 1, "--at", 2)
+    assert answer.status == 0
+    assert answer.out.startswith("Robot 1 at 2.00 s")
+    assert "Messages to it and from it" in answer.out
+
+
+def test_explain_of_a_stranger_is_2_in_one_line(onehop: Any, recorded: Path) -> None:
+    answer = onehop("explain", recorded, "--robot", 99, "--at", 2)
+    assert answer.status == 2
+    assert answer.err.count("\n") == 1
+    assert "not in the team" in answer.err
+
+
+def test_salvage_says_what_was_lost(onehop: Any, torn: Path, tmp_path: Path) -> None:
+    saved = tmp_path / "saved.mcap"
+    answer = onehop("salvage", torn, "-o", saved)
+    assert answer.status == 0
+    assert "saved" in answer.out
+    assert "no whole record" in answer.out
+    again = onehop("diff", saved, torn, "--json")
+    assert again.json["ticks"] > 0
+    assert saved.name not in again.err
+
+
+def test_salvage_overwrites_nothing(onehop: Any, torn: Path, recorded: Path) -> None:
+    answer = onehop("salvage", torn, "-o", recorded)
+    assert answer.status == 2
+    assert "exists already" in answer.err
+
+
+def test_view_does_not_overwrite_a_torn_log(onehop: Any, torn: Path) -> None:
+    before = torn.read_bytes()
+    assert onehop("view", torn).status == 2
+    assert torn.read_bytes() == before
+
+
+def test_view_writes_into_another_file(onehop: Any, recorded: Path, tmp_path: Path) -> None:
+    before = recorded.read_bytes()
+    answer = onehop("view", recorded, "-o", tmp_path / "view.mcap", "--json")
+    assert answer.status == 0
+    assert answer.json["topics"]["/tf"] > 10
+    assert recorded.read_bytes() == before
+
+
+@pytest.mark.slow
+def test_report_lists_what_it_wrote(onehop: Any, recorded: Path, tmp_path: Path) -> None:
+    answer = onehop("report", recorded, "--out", tmp_path, "--json")
+    assert answer.status == 0
+    assert Path(answer.json["report"]).read_text().startswith("<!doctype html>")
+    assert {Path(figure).name for figure in answer.json["figures"]} >= {"timeline.png", "followers.png"}
