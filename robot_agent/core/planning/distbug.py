@@ -34,6 +34,8 @@ class Circuit:
     """One boundary following. side: +1 obstacle on the left. hit, course: where it began, and which way.
 
     ahead: (n, 2) boundary known ahead of the anchor, its first point. length: followed so far [m].
+    leaving: it is on its way to a place that seemed to be closer; the boundary is given up only when
+    the robot is closer indeed. loyal_until: length before which it does not try that again [m].
     """
 
     side: int
@@ -41,6 +43,8 @@ class Circuit:
     course: FloatArray
     ahead: FloatArray
     length: float = 0.0
+    leaving: bool = False
+    loyal_until: float = 0.0
 
 
 class DistBug:
@@ -59,23 +63,34 @@ class DistBug:
     def way(self, view: View, roadmap: RoadMap, costs: FloatArray) -> FloatArray | None:
         """The way to take now, (n, 2) [m]; None with `turn` set to a heading, or with `enclosed`."""
         self.turn = None
-        self.least = min(self.least, math.dist(view.origin, self.goal))
-        if self.circuit is not None:
-            self._advance(view, self.circuit)
+        circuit, here = self.circuit, math.dist(view.origin, self.goal)
+        if circuit is not None and here < self.least - self.step:
+            circuit = self.circuit = None
+        self.least = min(self.least, here)
+        if circuit is not None and not circuit.leaving:
+            self._advance(view, circuit)
             if self.enclosed:
                 return None
-        closer = self._closer(roadmap, costs)
-        if closer is not None:
-            self.circuit = None
+        closer = self._closer(view, roadmap, costs)
+        if circuit is None:
+            return self._hit(view) if closer is None else closer
+        if closer is not None and circuit.length >= circuit.loyal_until:
+            circuit.leaving = True
             return closer
-        if self.circuit is None:
-            return self._hit(view)
-        return self._follow(view, self.circuit)
+        if circuit.leaving:
+            circuit.leaving = False
+            circuit.loyal_until = circuit.length + 4.0 * self.radius
+        return self._follow(view, circuit)
 
-    def _closer(self, roadmap: RoadMap, costs: FloatArray) -> FloatArray | None:
-        """Way to the best place that meets the leave condition, if one is in reach."""
+    def _closer(self, view: View, roadmap: RoadMap, costs: FloatArray) -> FloatArray | None:
+        """Way to the best place that meets the leave condition, if one is in reach.
+
+        Only in the nearer half of the view: further out a wall that the beams graze is seen by so few
+        hits that places on it look free.
+        """
         left = np.hypot(*(roadmap.points - self.goal).T)
-        total = np.where(left < self.least - self.step, costs + left, np.inf)
+        meets = (left < self.least - self.step) & (costs < 0.5 * view.fan.range)
+        total = np.where(meets, costs + left, np.inf)
         best = int(np.argmin(total))
         return roadmap.path(best) if math.isfinite(total[best]) else None
 

@@ -21,7 +21,7 @@ NEIGHBOURS = 6
 DISCOMFORT = 2.0
 """A way that keeps only the clearance is taken if the comfortable one is more than this much longer."""
 
-EDGE_PROBES = (0.25, 0.5, 0.75)
+EDGE_PROBES = (0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875)
 """Where along an edge its visibility is probed."""
 
 

@@ -149,8 +149,25 @@ def _outline(hits: FloatArray, grain: float) -> FloatArray:
     cell = np.floor(np.cumsum(np.minimum(step, grain)) / grain)
     keep = np.concatenate(([True], np.diff(cell, prepend=0.0) > 0))
     keep[-1] = True
-    wide = np.flatnonzero((step > 5.0 * grain) & (step < 20.0 * grain))
-    return np.concatenate((hits[keep], 0.5 * (hits[wide] + hits[wide + 1])))
+    wide = np.flatnonzero((step > 5.0 * grain) & ((step < 20.0 * grain) | _same_wall(hits, step)))
+    between = [
+        hits[i]
+        + (hits[i + 1] - hits[i]) * np.linspace(0.0, 1.0, 2 + int(step[i] / (5.0 * grain)))[1:-1, None]
+        for i in wide.tolist()
+    ]
+    return np.concatenate((hits[keep], *between))
+
+
+def _same_wall(hits: FloatArray, step: FloatArray) -> BoolArray:
+    """Which gaps between consecutive hits lie in line with the hits around them and are no wider than
+    theirs: a wall that the beams graze, not a way through it.
+    """
+    direction = np.arctan2(*np.diff(hits, axis=0).T[::-1])
+    straight = np.zeros(len(step), dtype=np.bool_)
+    for side in (-1, 1):
+        other, gap = np.roll(direction, side), np.roll(step, side)
+        straight |= (np.cos(direction - other) > 0.99) & (step < 1.6 * gap)
+    return straight
 
 
 def squared_distances(a: FloatArray, b: FloatArray) -> Float32Array:
