@@ -2,7 +2,7 @@
 
 Prints one JSON object. The peer is measured in the same run, in turns with ours, and medians are taken,
 because absolute times on shared machines drift by a factor of two. Without `pip install ir-sim` the
-peer's figure is "not installed". IR-SIM moves the robots and casts the laser; ours also runs radio, team,
+peer's figure is "not installed". IR-SIM moves robots and casts the laser; ours also runs radio, team,
 planner and recording.
 """
 

@@ -16,8 +16,10 @@ from onehop.contracts.scenario import Point
 from world_server.core.walls import BoolArray, FloatArray, WallMap
 
 _STEPS = np.array(
-    [(1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)]
-    + [(1, 2), (2, 1), (-1, 2), (-2, 1), (1, -2), (2, -1), (-1, -2), (-2, -1)]
+    (
+        *((1, 0), (0, 1), (-1, 0), (0, -1), (1, 1), (-1, 1), (-1, -1), (1, -1)),
+        *((1, 2), (2, 1), (-1, 2), (-2, 1), (1, -2), (2, -1), (-1, -2), (-2, -1)),
+    )
 )
 
 
@@ -44,7 +46,7 @@ class KnownMap:
         )
 
     def distances(self, goal: Point) -> FloatArray:
-        """Length of the shortest raster way to the goal from each cell, (rows, columns) [m]; inf: none."""
+        """Length of the shortest raster way from each cell, (rows, columns) [m]; inf: none."""
         row, column = self.cell_of(goal)
         return _dijkstra(self.free, row, column, _STEPS) * self.cell
 
@@ -80,7 +82,7 @@ def _clear(free: BoolArray, r0: int, c0: int, r1: int, c1: int) -> bool:
     count = 2 * max(abs(r1 - r0), abs(c1 - c0))
     for i in range(count + 1):
         share = i / max(count, 1)
-        if not free[int(round(r0 + share * (r1 - r0))), int(round(c0 + share * (c1 - c0)))]:
+        if not free[round(r0 + share * (r1 - r0)), round(c0 + share * (c1 - c0))]:
             return False
     return True
 

@@ -270,15 +270,10 @@ class RadioSection:
     def problems(self) -> Iterator[Problem]:
         if self.rate_mbps not in (1.0, 2.0, 5.5, 11.0):
             yield Problem("rate_mbps", f"{self.rate_mbps} Mb/s", "1, 2, 5.5 or 11 (802.11b)")
-        yield from _positive(
-            self,
-            "retry_limit",
-            "frequency_hz",
-            "reference_distance",
-            "mac_header_bytes",
-            "queue_frames",
-            "gamma_distance",
+        positive = (
+            "retry_limit frequency_hz reference_distance mac_header_bytes queue_frames gamma_distance"
         )
+        yield from _positive(self, *positive.split())
         for key in ("wall_loss_db", "rts_threshold_bytes", "shadowing_db"):
             value = getattr(self, key)
             if value is not None and value < 0:

@@ -6,7 +6,6 @@ G. Bianchi, "Performance analysis of the IEEE 802.11 distributed coordination fu
 
 import math
 
-from onehop.contracts.airtime import ACK_BYTES, RTS_BYTES
 from radio_proxy.core.airtime import Timing
 from radio_proxy.core.error_rates import frame_success
 from radio_proxy.core.propagation import LinkBudget
@@ -129,8 +128,3 @@ class SaturatedLink:
             spent += (1.0 - done) ** i * (self._timing.difs / 1000.0 + self._backoff_us(i) + mean)
         ratio = 1.0 - (1.0 - heard) ** self._limit
         return ratio, ratio * self._bits / spent
-
-
-def sizes_bytes(timing: Timing, msdu_bytes: int) -> tuple[int, int, int, int]:
-    """Sizes of RTS, CTS, data and ACK with their headers [B]."""
-    return RTS_BYTES, ACK_BYTES, timing.mac_header_bytes + msdu_bytes, ACK_BYTES

@@ -162,7 +162,7 @@ class Follower:
         else:
             distance, bearing = aim.distance, aim.bearing
             pace = distance - standoff if aim.last else rho
-            side = 0 if aim.in_sight else self._side
+            side = 0 if aim.known else self._side
         if self._escape:
             return self._escaped()
         if abs(bearing) > FACING:

@@ -1,8 +1,10 @@
-"""Which point of the leader's trail a follower heads for while it cannot get to its slot.
+"""Which point a follower heads for while it cannot get to its slot: the leader's trail, or back to it.
 
-The newest one in sight. Where none is, the way back to where one was last in sight, and from there along
-the trail from point to point: the leader came through there. A point that is merely near may lie on the
-other side of a wall, so nearness counts only for a robot that never saw any.
+The newest point of the trail that is in sight. Where none is, the robot goes back the way it came, to
+where one last was: a slot can lie in a pocket on the other side of a wall, and the nearest point of the
+trail behind that wall. Both ways are known to be free, the leader's because it drove there, the robot's
+own because it did. The memory is bounded (MEMORY points of each); nearness to the trail counts only for
+a robot that never saw any of it.
 """
 
 import math
@@ -18,61 +20,86 @@ IN_SIGHT = 9.5
 REACHED = 0.7
 """A point of the trail is passed within this distance [m]."""
 
+CRUMB_STEP, MEMORY = 1.0, 128
+"""Spacing [m] and greatest number of the remembered points of each way."""
+
 Point = tuple[float, float]
 
 
 class Aim(NamedTuple):
-    """A point of the trail as the robot sees it [m, rad]. last: it is the newest of the trail."""
+    """The point to head for, as the robot sees it [m, rad]. last: the newest
+    of the trail. known: it is or was a moment ago in sight, so that the way to it is nearly straight."""
 
     distance: float
     bearing: float
     last: bool
-    in_sight: bool
+    known: bool
 
 
 class Pursuit:
-    """Remembers the last point of the trail that was in sight."""
+    """Remembers the leader's trail from where it was last in sight, and the robot's own way since."""
 
     def __init__(self, steering: Steering) -> None:
         """steering: has looked at the scan of the tick before this is asked."""
         self._steering = steering
-        self._anchor: Point | None = None
+        self._told: Sequence[Point] = ()
+        self._way: list[Point] = []
+        self._crumbs: list[Point] = []
 
     def watch(self, pose: Pose, trail: Sequence[Point]) -> bool:
-        """Remember the newest point in sight; whether there is one."""
-        for point in reversed(trail):
-            x, y = to_local(pose, *point)
-            distance = math.hypot(x, y)
-            if x < 0.0 or distance > IN_SIGHT:
-                continue
-            bearing = math.atan2(y, x)
-            free = self._steering.free_distance(bearing, tight=True)
-            if free >= min(distance, LOOKAHEAD) and self._steering.sees(bearing, distance):
-                self._anchor = point
+        """Remember the newest point in sight, or how to get back; whether one is in sight."""
+        if trail is not self._told:
+            self._learn(trail)
+        here = (pose.x, pose.y)
+        for place in range(len(self._way) - 1, -1, -1):
+            if self._in_sight(pose, self._way[place]):
+                del self._way[:place]
+                self._crumbs = [here]
                 return True
+        away = [math.dist(here, crumb) for crumb in self._crumbs]
+        back = next((k for k, distance in enumerate(away) if distance < REACHED), None)
+        if back is not None:
+            del self._crumbs[back + 1 :]
+        elif away and away[-1] > CRUMB_STEP:
+            self._crumbs.append(here)
+            del self._crumbs[:-MEMORY]
         return False
 
     def aim(self, pose: Pose, trail: Sequence[Point]) -> Aim | None:
         """Where to head for; None without a trail."""
-        if not trail:
-            self._anchor = None
-            return None
         in_sight = self.watch(pose, trail)
-        place = self._place(pose, trail)
-        if not in_sight:
-            x, y = trail[place]
-            if math.hypot(x - pose.x, y - pose.y) < REACHED and place < len(trail) - 1:
-                place += 1
-            self._anchor = trail[place]
-        x, y = to_local(pose, *trail[place])
-        return Aim(math.hypot(x, y), math.atan2(y, x), place == len(trail) - 1, in_sight)
+        way = self._way
+        if not way:
+            return None
+        if not in_sight and len(self._crumbs) > 1:
+            seen = (crumb for crumb in self._crumbs if self._in_sight(pose, crumb))
+            return self._aimed(pose, next(seen, self._crumbs[-1]), False, True)
+        if not in_sight and not self._crumbs:
+            away = [math.dist((pose.x, pose.y), point) for point in way]
+            del way[: away.index(min(away))]
+        if not in_sight and len(way) > 1 and math.dist(way[0], (pose.x, pose.y)) < REACHED:
+            del way[0]
+        return self._aimed(pose, way[0], len(way) == 1, in_sight or bool(self._crumbs))
 
-    def _place(self, pose: Pose, trail: Sequence[Point]) -> int:
-        """Index of the remembered point; the oldest if it is gone, the nearest if there is none."""
-        if self._anchor is None:
-            away = [math.hypot(x - pose.x, y - pose.y) for x, y in trail]
-            return away.index(min(away))
-        try:
-            return trail.index(self._anchor)
-        except ValueError:
-            return 0
+    def _learn(self, trail: Sequence[Point]) -> None:
+        """Add what is new in the leader's trail; a trail that has nothing in common is another one."""
+        self._told = trail
+        newest = self._way[-1] if self._way else None
+        if newest in trail:
+            self._way += trail[trail.index(newest) + 1 :]
+            del self._way[:-MEMORY]
+        else:
+            self._way, self._crumbs = list(trail), []
+
+    def _in_sight(self, pose: Pose, point: Point) -> bool:
+        x, y = to_local(pose, *point)
+        distance = math.hypot(x, y)
+        if x < 0.0 or distance > IN_SIGHT:
+            return False
+        bearing = math.atan2(y, x)
+        free = self._steering.free_distance(bearing, tight=True)
+        return free >= min(distance, LOOKAHEAD) and self._steering.sees(bearing, distance)
+
+    def _aimed(self, pose: Pose, point: Point, last: bool, known: bool) -> Aim:
+        x, y = to_local(pose, *point)
+        return Aim(math.hypot(x, y), math.atan2(y, x), last, known)

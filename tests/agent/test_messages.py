@@ -4,7 +4,7 @@ import math
 
 import msgpack
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onehop.contracts.errors import DecodeError
@@ -48,17 +48,20 @@ messages = st.one_of(
 )
 
 
+@settings(deadline=None)
 @given(messages)
 def test_what_is_encoded_comes_back(message):
     assert decode(encode(message)) == message
 
 
+@settings(deadline=None)
 @given(st.binary(max_size=300))
 def test_arbitrary_bytes_are_refused_without_another_error(payload):
     with pytest.raises(DecodeError):
         decode(payload)
 
 
+@settings(deadline=None)
 @given(messages, st.data())
 def test_a_flipped_byte_is_refused_or_still_a_message(message, data):
     payload = bytearray(encode(message))
@@ -71,6 +74,7 @@ def test_a_flipped_byte_is_refused_or_still_a_message(message, data):
     assert type(decoded) in (Command, Ack, Beacon, Join)
 
 
+@settings(deadline=None)
 @given(messages, st.integers(0, 400))
 def test_a_torn_payload_is_refused(message, length):
     payload = encode(message)

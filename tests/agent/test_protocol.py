@@ -8,6 +8,7 @@ import pytest
 from onehop.contracts.geometry import Pose
 from onehop.contracts.scenario import TeamSection
 from onehop.contracts.team import Mode, Shape
+from robot_agent.core.leading import Acquaintances
 from robot_agent.core.messages import Beacon, Command, Join, Order, Phase, encode
 from robot_agent.core.roster import Roster
 from tests.agent.team_net import TeamNet
@@ -165,6 +166,16 @@ def test_a_robot_that_comes_and_goes_is_taken_in_later_each_time():
     assert waits[2] > waits[1] - 1.0
 
 
+def test_probation_grows_with_every_loss_up_to_three_periods_in_a_row():
+    known = Acquaintances()
+    assert known.meet(6, period=10)
+    known.give_up((6,))
+    assert [known.meet(6, period) for period in (20, 20, 21)] == [False, False, True]
+    known.give_up((6,))
+    known.give_up((6,))
+    assert [known.meet(6, period) for period in (30, 31, 33, 34, 35)] == [False] * 4 + [True]
+
+
 def test_two_leaders_that_hear_each_other_form_the_same_union():
     a, b = Roster(4, (2, 3, 5)), Roster(7, (1, 3, 6))
     assert a.merged(b.epoch, b.members) == b.merged(a.epoch, a.members) == Roster(8, (1, 2, 3, 5, 6))
@@ -187,12 +198,14 @@ def test_stale_epoch_is_ignored():
 def test_foreign_and_hostile_payloads_are_counted_and_ignored():
     net = drive()
     here = Pose(0.0, 0.0, 0.0)
+    strangers, usurped = Roster(900, (1, 2, 3, 4, 9)), Roster(900, (1, 2, 3))
     hostile = [
         (7, encode(Join(5, here))),  # nobody's robot
         (3, b"\xc1\xff"),  # no msgpack at all
         (3, encode(Beacon(Roster(900, (3, 9, 12)), Phase.DRIVING, False, here))),  # strangers listed
+        (3, encode(Command(Order.NEXT, strangers, 1, Phase.FINAL, False, here, (), ()))),
         (5, encode(Beacon(Roster(900, (1, 2, 3)), Phase.DRIVING, False, here))),  # not its leader
-        (5, encode(Command(Order.NEXT, Roster(900, (1, 2, 3)), 0, Phase.FINAL, False, here, (), ()))),
+        (5, encode(Command(Order.NEXT, usurped, 0, Phase.FINAL, False, here, (), ()))),
         (1, encode(Join(2**31 - 1, here))),  # to a follower: not its business
     ]
     before = {i: net.status(i) for i in (1, 2)}

@@ -3,7 +3,7 @@
 import math
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onehop.contracts.geometry import Pose, Twist
@@ -54,6 +54,7 @@ def test_speed_is_limited_to_what_the_body_can():
     assert polar_twist(error, GAINS, 3.0, 3.0).v == 3.0
 
 
+@settings(deadline=None, max_examples=30)
 @given(coordinate, coordinate, angle, angle, st.sampled_from([1.0, 3.0]))
 def test_closed_loop_comes_to_the_pose_from_anywhere(x, y, heading, wanted, k_rho):
     """Eq. 3.13, 3.14: stable; integrated with small steps, without limits of the body."""

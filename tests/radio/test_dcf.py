@@ -52,16 +52,21 @@ def test_a_busy_medium_is_entered_after_a_backoff() -> None:
 
 
 def test_backoff_freezes_while_the_medium_is_busy() -> None:
-    """9.2.5.2: slots that have passed are not waited for again."""
-    cell = Cell([(0, 0)] * 3, STILL)
-    for sender in (0, 1, 2):
-        for _ in range(12):
-            cell.send_at(0, sender, (sender + 1) % 3)
-    cell.run(400_000)
-    assert len(cell.arrived) == 36
-    overhead = 36 * (7_542 + 314)
-    idle_us = cell.arrived[-1][0] / 1000 + 314 - overhead
-    assert idle_us < 36 * 31 * 20 * 0.7
+    """9.2.5.2: a station that is interrupted after two slots of its backoff waits for the rest alone."""
+    exchange_us, difs_us = 7_542 + 314, 50
+    arrivals_us = []
+    for interrupted in (False, True):
+        cell = Cell([(0, 0)] * 6, STILL)
+        cell.send_at(0, 0, 1)
+        cell.send_at(3000, 2, 3)
+        if interrupted:
+            cell.send_at(exchange_us + difs_us + 5, 4, 5)
+        cell.run(60_000)
+        arrivals_us.append(next(now for now, sender, _ in cell.arrived if sender == 2) / 1000)
+    slots = (arrivals_us[0] - exchange_us - 7_542) / 20
+    assert slots > 3, "the draw of this seed leaves room for an interruption"
+    second_end_us = exchange_us + difs_us + 5 + exchange_us
+    assert arrivals_us[1] == second_end_us + 7_542 + 20 * (slots - 2)
 
 
 def test_stations_that_speak_in_the_same_slot_collide_and_double_their_window() -> None:

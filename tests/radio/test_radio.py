@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.messages import BROADCAST, Fate
+from onehop.contracts.messages import BROADCAST, Cut, Fate
 from onehop.contracts.scenario import RadioSection
 from tests.radio.missions import PERIOD, Mission, line, message
 
@@ -78,3 +78,57 @@ def test_a_full_queue_drops_the_newest() -> None:
     verdicts = mission.step({1: tuple(message(2) for _ in range(6))})
     full = [v.message for v in verdicts if v.fate is Fate.QUEUE_FULL]
     assert full == [5, 6]
+
+
+def test_robots_that_speak_in_the_same_tick_do_not_always_collide() -> None:
+    """Ticks put hand-overs into one instant; the cards spread them by a backoff."""
+    attempts = [
+        sum(v.attempts)
+        for seed in range(20)
+        for v in Mission(line(4, 3.0), STILL, seed).run(2, {1: (message(2),), 3: (message(4),)})
+    ]
+    assert len(attempts) == 40
+    assert attempts.count(1) >= 32
+
+
+def test_a_fault_at_a_tick_holds_for_every_frame_that_begins_after_it() -> None:
+    """An exchange that is under way when its link is cut gets no further frame through."""
+    data_ns = 6_816_000
+    for seed in range(60):
+        mission = Mission(line(2, 5.0), STILL, seed)
+        mission.step({1: tuple(message(2) for _ in range(8))})
+        mission.cuts = (Cut((1,), (2,)),)
+        for verdict in mission.run(12):
+            assert verdict.fate is not Fate.DELIVERED or verdict.arrival_ns - data_ns <= PERIOD + 100
+
+
+def test_what_a_relay_drops_before_it_acknowledges_has_a_verdict() -> None:
+    mission = Mission(line(3, 20.0), RadioSection(routing="mrdv", shadowing_db=0.0))
+    mission.run(20, {1: (message(3),)})
+    mission.incarnations[2] = 1
+    (verdict,) = mission.run(3, {1: (message(3),)})
+    assert (verdict.fate, verdict.path) == (Fate.NO_ROUTE, (1, 2))
+
+
+def test_discovery_is_service_and_waiting_is_not() -> None:
+    """radio.md: discovery, retries and relays count, the wait behind other messages does not."""
+    mission = Mission(line(3, 20.0), RadioSection(routing="mrdv", shadowing_db=0.0))
+    verdicts = mission.run(40, {1: (message(3), message(3), message(3))})
+    for verdict in verdicts:
+        service = verdict.arrival_ns - verdict.service_start_ns
+        assert verdict.discovery_ns > 200_000_000
+        assert verdict.discovery_ns + 15_000_000 < service < verdict.discovery_ns + 45_000_000
+        assert verdict.queueing_ns == verdict.service_start_ns - verdict.offered_ns
+    assert verdicts[2].queueing_ns > verdicts[0].queueing_ns + 14_000_000
+
+
+@pytest.mark.parametrize("routing", ["direct", "mrdv", "mrsr"])
+def test_a_message_that_arrives_twice_is_delivered_once(routing: str) -> None:
+    """At 20 m an acknowledgement in three is lost, and messages are sent again."""
+    section = RadioSection(routing=routing)  # type: ignore[arg-type]
+    mission = Mission({1: (0.0, 0.0), 2: (20.0, 0.0), 3: (10.0, 8.0)}, section)
+    for _ in range(200):
+        mission.run(2, {1: (message(2),)})
+    mission.run(1000)
+    numbers = [verdict.message for verdict in mission.verdicts]
+    assert sorted(numbers) == list(range(1, 201))

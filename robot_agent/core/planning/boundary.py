@@ -83,7 +83,7 @@ def _pivot(
 
 
 def _known(view: View, traced: FloatArray, radius: float) -> FloatArray:
-    """The traced places up to the first that is neither in view nor, out of view, right beside the robot."""
+    """The traced places up to the first that is neither in view nor, out of it, beside the robot."""
     bearing, distance = view.polar(traced)
     beside = (distance < 2.0 * radius) & (np.abs(bearing) > view.fan.angles[-1])
     unknown = np.flatnonzero(~(view.visible(traced) | beside))

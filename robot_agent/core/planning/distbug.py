@@ -11,6 +11,7 @@ by the step, because the laser sees more than one direction; every such place al
 condition, that each leaving lowers the least distance by a step.
 """
 
+import itertools
 import math
 from dataclasses import dataclass
 
@@ -110,12 +111,12 @@ class DistBug:
         return settle(view.obstacles, first, self.radius)[0] if len(view.obstacles) else first
 
     def _advance(self, view: View, circuit: Circuit) -> None:
-        """Move the anchor to the boundary place nearest to the robot, and see whether the loop closed."""
+        """Move the anchor to the boundary place nearest to the robot; see if the loop closed."""
         nearest = int(np.argmin(np.hypot(*(circuit.ahead - view.origin).T)))
         passed = circuit.ahead[: nearest + 1]
         circuit.ahead = circuit.ahead[nearest:]
         self.least = min(self.least, float(np.hypot(*(passed - self.goal).T).min()))
-        for a, b in zip(passed[:-1], passed[1:], strict=True):
+        for a, b in itertools.pairwise(passed):
             circuit.length += math.dist(a, b)
             again = math.dist(b, circuit.hit) < 0.6 * self.radius and (b - a) @ circuit.course > 0.0
             if again and circuit.length > 6.0 * self.radius:

@@ -5,6 +5,7 @@ there is 2 sin(alpha) / lookahead. The speed is the leader's constant speed; it 
 turn rate could not follow, or where the next step would come closer to an obstacle than is allowed.
 """
 
+import itertools
 import math
 
 import numpy as np
@@ -39,8 +40,9 @@ class Driver:
         self.shielded = 0
         self.turning = 0
         step = body.leader_speed * period
-        self._caution = clearance + 2.0 * step
-        self._stop_ranges = _corridor(fan.angles, body.radius + 0.05, 3.0 * body.radius + 2.0 * step)
+        aside, ahead = body.radius + 0.05, 3.0 * body.radius + 2.0 * step
+        self._stop_ranges = _corridor(fan.angles, aside, ahead)
+        self._caution = max(clearance + 2.0 * step, math.hypot(aside, ahead))
 
     def follow(self, way: FloatArray) -> None:
         """Take a new way, (n, 2) [m], map frame, from where the robot is."""
@@ -53,7 +55,7 @@ class Driver:
         if len(self.way) < 2:
             return 0.0
         points = [(pose.x, pose.y), *self.way[self.leg + 1 :]]
-        return sum(math.dist(a, b) for a, b in zip(points, points[1:], strict=False))
+        return sum(math.dist(a, b) for a, b in itertools.pairwise(points))
 
     def drive(self, pose: Pose, scan: Ranges) -> Twist:
         """The twist for this tick on the way; standstill at its end."""
@@ -88,7 +90,7 @@ class Driver:
         return self._turn(wrap_angle(heading - pose.heading))
 
     def _turn(self, bearing: float) -> Twist:
-        """Turn in place; the side is kept until the turn is done, or two sides could take turns forever."""
+        """Turn in place; the side is kept until the turn is done, or two could alternate forever."""
         if not self.turning:
             self.turning = 1 if bearing >= 0 else -1
         if bearing * self.turning < 0 and abs(bearing) < math.pi / 2:
@@ -104,7 +106,7 @@ class Driver:
         if nearest > self._caution:
             self.shielded = 0
             return twist
-        seen = np.flatnonzero(scan < self._caution)
+        seen = np.flatnonzero(scan <= self._caution)
         points = self.fan.directions[seen] * scan[seen, None]
         step, turn = twist.v * self.period, 0.5 * twist.w * self.period
         next_room = np.hypot(points[:, 0] - step * math.cos(turn), points[:, 1] - step * math.sin(turn))

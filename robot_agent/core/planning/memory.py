@@ -1,4 +1,4 @@
-"""The leader's memory of where it was and what it left open: a bounded graph of way points, no obstacles.
+"""What a leader remembers of where it was and what it left open: a bounded graph, no obstacles.
 
 Three kinds of way points: places (the robot was there), openings (seen free, beside something unseen),
 and closed ones (openings that turned out to lead nowhere new, kept so that they are not opened again).
@@ -46,7 +46,7 @@ class WayPoints:
         return self.count < self.capacity or bool((self.kind == CLOSED).any())
 
     def add(self, x: float, y: float, kind: int) -> int:
-        """Remember a way point and say its number; there must be room. The oldest closed one goes first."""
+        """Remember a way point and say its number; there must be room. The oldest closed one goes."""
         number = self.count
         if self.count < self.capacity:
             self.count += 1
@@ -98,9 +98,9 @@ class WayPoints:
         return int(numbers[best]), math.sqrt(float(distance2[best]))
 
     def routes(self, seeds: dict[int, float]) -> tuple[dict[int, float], dict[int, int]]:
-        """Dijkstra from several seeds with their costs: cost of each way point, and where it came from."""
+        """Dijkstra from seeds with their costs: cost of each way point, and where it came from."""
         cost = dict(seeds)
-        origin = {number: -1 for number in seeds}
+        origin = dict.fromkeys(seeds, -1)
         heap = sorted((length, number) for number, length in seeds.items())
         while heap:
             length, here = heapq.heappop(heap)

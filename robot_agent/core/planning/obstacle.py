@@ -1,9 +1,9 @@
 """Which obstacle stands in the way, and where the fan turns because of it (thesis 3.4.1, Algorithm 2 a).
 
 Only what is nearer than the classification range (3 m) counts. The thesis names the cases and does not
-say how they are told apart; here a hit belongs to the right, the front or the left third of the view,
-and the nearest of them decides: in front with something beside it, a corner; at one side, a wall to follow,
-even if it reaches into the front.
+say how they are told apart; here a hit belongs to the right, the front or the left third of the
+view, and the nearest of them decides: in front with something beside it, a corner; at one side, a wall
+to follow, even if it reaches into the front.
 """
 
 import math

@@ -26,7 +26,7 @@ MOST_MOVES = 8
 
 
 class Openings:
-    """Way points with the rules that make, close and choose openings. Lengths follow the inflation [m]."""
+    """Way points and the rules that make, close and choose openings. Lengths follow the inflation."""
 
     def __init__(self, capacity: int, goal: FloatArray, inflation: float) -> None:
         self.memory = WayPoints(capacity)
@@ -106,8 +106,8 @@ class Openings:
     def _worth(self, points: FloatArray, record: float) -> BoolArray:
         """Which (n, 2) points are worth a new opening.
 
-        They are far enough from other openings, and either closer to the goal than the robot ever was, or
-        far enough from places and closed openings.
+        They are far enough from other openings, and either closer to the goal than the robot ever
+        was, or far enough from places and closed openings.
         """
         nearest = {
             kind: squared_distances(points, self.memory.xy[self.memory.of_kind(kind)]).min(

@@ -134,12 +134,12 @@ class RoadMap:
         return cost
 
     def path(self, goal: int) -> FloatArray | None:
-        """Shortest way from the robot to point `goal`, (n, 2) [m], robot first; None if there is none."""
+        """Shortest way from the robot to point `goal`, (n, 2) [m], robot first; None if none."""
         chain = self.chain(goal)
         return None if chain is None else self.shorten(self.points[chain])
 
     def chain(self, goal: int) -> list[int] | None:
-        """The points of the shortest way to point `goal` by A*, the robot first; None if there is none."""
+        """The points of the shortest way to point `goal` by A*, the robot first; None if none."""
         points = self.points
         guess = np.hypot(*(points - points[goal]).T).tolist()
         cost, origin = {0: 0.0}, {0: 0}

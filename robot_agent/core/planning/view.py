@@ -78,8 +78,8 @@ class View:
         return shown
 
     def surrounded(self, points: FloatArray, margin: float) -> BoolArray:
-        """Which (n, 2) points are so far inside the field of view that nothing unseen beside its edge can
-        be closer than `margin`; what is near the robot counts, because it was in view a moment ago.
+        """Which (n, 2) points are so far inside the field of view that nothing unseen beside its edge
+        can be closer than `margin`; what is near the robot counts, because it was in view a moment ago.
         """
         bearing, distance = self.polar(points)
         inside = np.clip(self.fan.angles[-1] - np.abs(bearing), 0.0, math.pi / 2)

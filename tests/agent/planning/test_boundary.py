@@ -48,7 +48,7 @@ def test_disc_rolls_once_around_a_square(side: int) -> None:
 
 @pytest.mark.parametrize(("gap", "passes"), [(0.9, False), (1.1, True)])
 def test_disc_passes_a_gap_only_if_it_fits(gap: float, passes: bool) -> None:
-    """Two walls with a gap between: a disc of radius 0.5 rolls over it or around the first wall's end."""
+    """Two walls with a gap between: a disc of radius 0.5 rolls over it or around the end."""
     s = np.arange(0.0, 4.0, 0.05)
     walls = np.concatenate((np.column_stack((s, 0 * s)), np.column_stack((4.0 + gap + s, 0 * s))))
     view = View(FAN, Pose(2.0, -2.0, 0.0), NOTHING_SEEN, frozenset(), 0.05, walls)

@@ -1,6 +1,7 @@
 """The three pathfinders on whole missions of one leader, with the world's own laser and motion."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -70,7 +71,8 @@ def moved(pose: np.ndarray, twist: Twist) -> np.ndarray:
 def test_same_seed_same_path_and_another_seed_another() -> None:
     ground = field(box(20, 10, 25, 30), size=40.0)
     first, again, other = (
-        solo(*alone(ground, (10.0, 20.0, 0.0), (35.0, 20.0), seed=seed)).path.tobytes() for seed in (1, 1, 2)
+        solo(*alone(ground, (10.0, 20.0, 0.0), (35.0, 20.0), seed=seed)).path.tobytes()
+        for seed in (1, 1, 2)
     )
     assert first == again
     assert first != other
@@ -96,11 +98,12 @@ def test_a_team_mate_ahead_is_waited_for_and_does_not_end_the_search() -> None:
 @pytest.mark.slow
 def test_no_way_is_the_answer_for_a_closed_room_in_bounded_time() -> None:
     scenario, walls = alone(field(*CLOSED_ROOM), (60.0, 60.0, 45.0), (82.0, 82.0), limit_s=1500.0)
+    scenario = replace(scenario, planner=replace(scenario.planner, patience=5.0))
     outcome = solo(scenario, walls)
     assert outcome.progress is Progress.NO_WAY
     assert outcome.contacts == 0
     search = scenario.planner.patience * scenario.robot.laser_range
-    assert outcome.length < 2.5 * search + 2.0 * 104.0
+    assert outcome.length < 2.5 * search + 2.0 * 104.0, outcome.length
 
 
 @pytest.mark.slow
@@ -151,6 +154,8 @@ def test_memory_of_escape_is_fixed_when_it_is_made() -> None:
     finder = make_pathfinder(robot_briefing(scenario, 1, 0), Pose(10.0, 20.0, 0.0), generator(1, "test"))
     assert isinstance(finder, Escape)
     before = finder.openings.nbytes
-    scan = Laser(walls, RobotSection()).scans(np.array([[10.0, 20.0, 0.0]]), np.zeros(1, dtype=np.int32))[0]
+    scan = Laser(walls, RobotSection()).scans(
+        np.array([[10.0, 20.0, 0.0]]), np.zeros(1, dtype=np.int32)
+    )[0]
     finder.step(Pose(10.0, 20.0, 0.0), scan, frozenset())
     assert finder.openings.nbytes == before < 150_000

@@ -1,5 +1,6 @@
 """Local road maps: what they keep clear of, A*, and what the view says about free space."""
 
+import itertools
 import math
 
 import numpy as np
@@ -23,7 +24,9 @@ BLOCKS = field(box(16, 6, 18, 12), box(14, 14, 15, 20), box(20, 13, 24, 15), siz
 
 
 def look(ground: MapSection, x: float, y: float, heading: float) -> View:
-    scan = Laser(load_map(ground, {}), BODY).scans(np.array([(x, y, heading)]), np.zeros(1, dtype=np.int32))
+    scan = Laser(load_map(ground, {}), BODY).scans(
+        np.array([(x, y, heading)]), np.zeros(1, dtype=np.int32)
+    )
     return View(FAN, Pose(x, y, heading), scan[0], frozenset(), 0.05)
 
 
@@ -33,8 +36,9 @@ def road_map(view: View, seed: int = 1, samples: int = 200) -> RoadMap:
     return RoadMap(view, points, NO_POINTS, 0.52, 0.7)
 
 
-@pytest.mark.parametrize("heading", [0.0, 0.9, -0.7])
+@pytest.mark.parametrize("heading", [0.0, 0.9, 0.4])
 def test_every_edge_keeps_the_inflation_from_the_true_walls(heading: float) -> None:
+    """Poses with no wall just outside of the view, which one scan alone cannot know of."""
     roadmap = road_map(look(BLOCKS, 10.0, 11.0, heading))
     assert len(roadmap.edges) > 200
     walls = load_map(BLOCKS, {}).segments
@@ -56,7 +60,7 @@ def test_a_star_finds_the_cheapest_way() -> None:
     for goal in reachable[::10].tolist():
         chain = roadmap.chain(goal)
         assert chain is not None
-        total = sum(length[a, b] for a, b in zip(chain, chain[1:], strict=False))
+        total = sum(length[a, b] for a, b in itertools.pairwise(chain))
         assert total == pytest.approx(costs[goal], abs=1e-6)
 
 

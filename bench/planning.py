@@ -1,0 +1,255 @@
+"""The planner's figures as one JSON object.
+
+Without arguments: time of a local plan (200 samples and A*) beside OMPL's PRM on the same scene, time of
+a step that only follows its way, and memory. OMPL is an optional development dependency (pip install
+ompl); without it the object says "not installed".
+
+With maps: `python bench/planning.py --pairs 50 scenarios/map1.toml ../shared/maps/ros/depot.yaml ...`
+drives escape between random pairs of places that the known map shows to be connected, and reports path
+length against the shortest, beside TangentBug's.
+"""
+
+import argparse
+import importlib
+import json
+import math
+import resource
+import time
+import tomllib
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from tangent_bug import AROUND, tangent_bug
+
+from onehop.analysis.shortest import KnownMap, way_length
+from onehop.contracts.geometry import Pose
+from onehop.contracts.randomness import generator
+from onehop.contracts.scenario import (
+    ClockSection,
+    GoalSection,
+    MapSection,
+    PlannerSection,
+    RobotSection,
+    Scenario,
+    StartSection,
+    robot_briefing,
+)
+from onehop.drive.solo import solo
+from robot_agent.core.planning import make_pathfinder
+from robot_agent.core.planning.roadmap import RoadMap, sample_fan
+from robot_agent.core.planning.view import NO_POINTS, View
+from robot_agent.core.scan import Fan, FloatArray
+from world_server.core.laser import Laser
+from world_server.core.mapfile import load_map, map_files
+from world_server.core.walls import WallMap
+
+SMALL_MAPS = {
+    "depot": (PlannerSection(inflation=0.25), RobotSection(radius=0.15, leader_speed=0.5)),
+    "tb3_sandbox": (
+        PlannerSection(inflation=0.2),
+        RobotSection(radius=0.12, leader_speed=0.3, laser_range=3.5),
+    ),
+}
+"""Robots that fit the ROS maps, which are a few tens of metres: a TurtleBot3 sees 3.5 m."""
+
+BLOCKS = tuple(
+    ((x, y), (x + 1.5, y), (x + 1.5, y + 2.0), (x, y + 2.0))
+    for x, y in ((13.0, 9.0), (15.0, 14.0), (17.0, 6.0), (12.0, 16.0), (18.5, 11.5), (14.0, 4.0))
+)
+
+
+def scene() -> tuple[View, RobotSection]:
+    """Six blocks in the half disc before a robot that stands in a 30 m field."""
+    body = RobotSection()
+    walls = load_map(MapSection(width=30.0, height=30.0, obstacles=BLOCKS), {})
+    scan = Laser(walls, body).scans(np.array([(10.0, 11.0, 0.0)]), np.zeros(1, dtype=np.int32))[0]
+    return View(Fan(body), Pose(10.0, 11.0, 0.0), scan, frozenset(), 0.05), body
+
+
+def local_plan(rounds: int) -> dict[str, float]:
+    """Wall time of view, 200 samples, road map and A* [ms]."""
+    view, body = scene()
+    scan = np.where(view.open_beams, np.inf, view.sight).astype(np.float32)
+    fan, random, took = Fan(body), generator(1, "bench"), []
+    for _ in range(rounds):
+        began = time.perf_counter()
+        look = View(fan, view.pose, scan, frozenset(), 0.05)
+        samples = sample_fan(look, random.random((200, 2)), 0.0, math.pi / 2, 0.52)
+        roadmap = RoadMap(look, samples, NO_POINTS, 0.52, 0.7)
+        left = np.hypot(*(roadmap.points - (25.0, 14.0)).T)
+        roadmap.path(int(np.argmin(np.where(np.isfinite(roadmap.costs()), left, np.inf))))
+        took.append((time.perf_counter() - began) * 1e3)
+    return percentiles(took)
+
+
+def ompl_prm(rounds: int) -> dict[str, float] | str:
+    """Wall time of OMPL's PRM until it has 200 milestones and a solution [ms], checker in Python."""
+    try:
+        base, geometric = importlib.import_module("ompl.base"), importlib.import_module("ompl.geometric")
+    except ImportError:
+        return "not installed"
+    view, _ = scene()
+    obstacles, fan = view.obstacles, view.fan
+    left = float(fan.angles[0])
+    step = float(fan.angles[1]) - left
+
+    def valid(state: Any) -> bool:
+        x, y = state[0], state[1]
+        dx, dy = x - 10.0, y - 11.0
+        beam = round((math.atan2(dy, dx) - left) / step)
+        if not 0 <= beam <= 180 or math.hypot(dx, dy) > view.sight[beam]:
+            return False
+        return bool(((obstacles[:, 0] - x) ** 2 + (obstacles[:, 1] - y) ** 2).min() >= 0.52**2)
+
+    took = []
+    for _ in range(rounds):
+        began = time.perf_counter()
+        space = base.RealVectorStateSpace(2)
+        bounds = base.RealVectorBounds(2)
+        for axis, (low, high) in enumerate(((10.0, 20.0), (1.0, 21.0))):
+            bounds.setLow(axis, low)
+            bounds.setHigh(axis, high)
+        space.setBounds(bounds)
+        information = base.SpaceInformation(space)
+        information.setStateValidityChecker(valid)
+        information.setStateValidityCheckingResolution(0.02)
+        information.setup()
+        problem = base.ProblemDefinition(information)
+        start, goal = space.allocState(), space.allocState()
+        start[0], start[1], goal[0], goal[1] = 10.01, 11.0, 19.0, 13.8
+        problem.setStartAndGoalStates(start, goal, 0.5)
+        planner = geometric.PRM(information)
+        planner.setProblemDefinition(problem)
+        planner.setup()
+        enough = base.PlannerTerminationCondition(
+            lambda planner=planner: planner.milestoneCount() >= 200
+        )
+        planner.growRoadmapPtc(enough)
+        planner.solve(base.timedPlannerTerminationCondition(1.0))
+        took.append((time.perf_counter() - began) * 1e3)
+    return percentiles(took)
+
+
+def following(ticks: int) -> dict[str, float]:
+    """Wall time of a step in an open field, planning moments left out, and with them shared out [us]."""
+    scenario = Scenario(
+        name="open", goal=GoalSection(900.0, 15.0), map=MapSection(width=1000.0, height=30.0)
+    )
+    walls = load_map(scenario.map, {})
+    laser = Laser(walls, scenario.robot)
+    finder = make_pathfinder(robot_briefing(scenario, 1, 0), Pose(5.0, 15.0, 0.0), generator(1, "bench"))
+    plain, every, pose = [], [], np.array([[5.0, 15.0, 0.0]])
+    for _ in range(ticks):
+        scan = laser.scans(pose, np.zeros(1, dtype=np.int32))[0]
+        place, before = Pose(*map(float, pose[0])), finder.survey
+        began = time.perf_counter()
+        twist = finder.step(place, scan, frozenset()).twist
+        took = (time.perf_counter() - began) * 1e6
+        every.append(took)
+        if finder.survey is before:
+            plain.append(took)
+        heading = pose[0, 2] + 0.5 * twist.w * 0.05
+        pose[0] += twist.v * 0.05 * math.cos(heading), twist.v * 0.05 * math.sin(heading), twist.w * 0.05
+    return {"follow_us_p50": float(np.median(plain)), "with_planning_us_mean": float(np.mean(every))}
+
+
+def percentiles(values: list[float]) -> dict[str, float]:
+    return {"p50_ms": float(np.percentile(values, 50)), "p99_ms": float(np.percentile(values, 99))}
+
+
+def read_map(path: Path) -> tuple[Scenario, WallMap]:
+    """A scenario for one leader on a map file: a scenario's polygons, a ROS map or a MovingAI grid."""
+    planner, body = SMALL_MAPS.get(path.stem, (PlannerSection(), RobotSection()))
+    if path.suffix == ".toml":
+        table = tomllib.loads(path.read_text())["map"]
+        polygons = tuple(tuple((float(x), float(y)) for x, y in p) for p in table["obstacles"])
+        section = MapSection(width=table["width"], height=table["height"], obstacles=polygons)
+        walls = load_map(section, {})
+    else:
+        section = MapSection(file=str(path))
+        files = {str(path): path.read_bytes()}
+        files |= {
+            name: (path.parent / name).read_bytes() for name in map_files(str(path), files[str(path)])
+        }
+        walls = load_map(section, files)
+    return Scenario(
+        name=path.stem, goal=GoalSection(0, 0), map=section, planner=planner, robot=body
+    ), walls
+
+
+def campaign(path: Path, count: int) -> dict[str, object]:
+    """Random pairs on one map: escape against the shortest way, and TangentBug against it."""
+    scenario, walls = read_map(path)
+    known = KnownMap(walls, scenario.planner.inflation, min(0.25, scenario.planner.inflation / 2))
+    cells, random = np.argwhere(known.free), generator(7, "pairs")
+    span = max(walls.bounds[2] - walls.bounds[0], walls.bounds[3] - walls.bounds[1])
+    ratios, tangent, failed, clearance = [], [], [], math.inf
+    pairs = 0
+    while pairs < count:
+        (r0, c0), (r1, c1) = cells[random.integers(len(cells), size=2)].tolist()
+        start, goal = (float(known.x[c0]), float(known.y[r0])), (float(known.x[c1]), float(known.y[r1]))
+        if math.dist(start, goal) < 0.1 * span:
+            continue
+        way = known.shortest(start, known.distances(goal))
+        if way is None:
+            continue
+        pairs += 1
+        shortest = way_length(way)
+        bug = tangent_bug(known.free, c0, r0, c1, r1, scenario.robot.laser_range / known.cell, AROUND)
+        tangent.append(bug * known.cell / shortest if bug > 0 else math.inf)
+        outcome = solo(
+            replace(
+                scenario,
+                start=StartSection(x=start[0], y=start[1]),
+                goal=GoalSection(*goal),
+                clock=ClockSection(limit_s=12000.0),
+            ),
+            walls,
+        )
+        clearance = min(clearance, outcome.min_clearance)
+        if outcome.summary()["reached"]:
+            ratios.append(outcome.length / (shortest - scenario.goal.tolerance))
+        else:
+            failed.append({"start": start, "goal": goal, "answer": outcome.progress.value})
+    return {
+        "map": path.name,
+        "pairs": pairs,
+        "reached": len(ratios),
+        "failed": failed,
+        "min_clearance_m": round(clearance, 4),
+        "inflation_m": scenario.planner.inflation,
+        "escape": shares(ratios),
+        "tangent_bug": shares(tangent),
+    }
+
+
+def shares(ratios: list[float]) -> dict[str, float]:
+    values: FloatArray = np.array(ratios)
+    return {
+        "median": round(float(np.median(values)), 3),
+        "p95": round(float(np.percentile(values, 95, method="lower")), 3),
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser.add_argument("maps", nargs="*", type=Path)
+    parser.add_argument("--pairs", type=int, default=50)
+    parser.add_argument("--rounds", type=int, default=300)
+    arguments = parser.parse_args()
+    if arguments.maps:
+        print(json.dumps([campaign(path, arguments.pairs) for path in arguments.maps], indent=1))
+        return
+    local_plan(20)
+    ours, peer = local_plan(arguments.rounds), ompl_prm(max(20, arguments.rounds // 10))
+    figures: dict[str, object] = {"local_plan_200": ours, "ompl_prm_200": peer, "step": following(4000)}
+    if isinstance(peer, dict):
+        figures["times_faster_p50"] = round(peer["p50_ms"] / ours["p50_ms"], 1)
+    figures["max_rss_mb_of_this_process"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    print(json.dumps(figures, indent=1))
+
+
+if __name__ == "__main__":
+    main()

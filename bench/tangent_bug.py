@@ -1,0 +1,141 @@
+"""TangentBug on the known map, as the baseline of the planner's campaign.
+
+Kamon, Rimon and Rivlin, "TangentBug: a range-sensor-based navigation algorithm" (IJRR 17(9), 1998), for
+an ideal robot: a point on the raster of free places that sees 360 degrees and moves as it likes, so it
+is better off than our leader, who sees ahead only, keeps its speed and has to turn.
+"""
+
+import math
+
+import numba
+import numpy as np
+
+from world_server.core.walls import BoolArray, FloatArray
+
+RAYS = 360
+AROUND = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)])
+"""Steps (column, row) to the eight neighbours, counter-clockwise."""
+
+
+@numba.njit(cache=True)
+def _look(free: BoolArray, x: float, y: float, reach: float) -> FloatArray:
+    """Free range along each ray, in cells."""
+    rows, columns = free.shape
+    sight = np.empty(RAYS)
+    for ray in range(RAYS):
+        c, s = math.cos(2 * math.pi * ray / RAYS), math.sin(2 * math.pi * ray / RAYS)
+        distance = 0.0
+        while distance < reach:
+            column, row = round(x + c * (distance + 0.5)), round(y + s * (distance + 0.5))
+            if (
+                row < 0
+                or column < 0
+                or row >= rows
+                or column >= columns
+                or not free[int(row), int(column)]
+            ):
+                break
+            distance += 0.5
+        sight[ray] = min(distance, reach)
+    return sight
+
+
+@numba.njit(cache=True)
+def _straight(free: BoolArray, x0: float, y0: float, x1: float, y1: float) -> bool:
+    count = int(2 * max(abs(x1 - x0), abs(y1 - y0))) + 1
+    for i in range(count + 1):
+        x, y = x0 + (x1 - x0) * i / count, y0 + (y1 - y0) * i / count
+        if not free[round(y), round(x)]:
+            return False
+    return True
+
+
+@numba.njit(cache=True)
+def _best_end(
+    sight: FloatArray, x: float, y: float, gx: float, gy: float, reach: float
+) -> tuple[int, float]:
+    """The ray whose end makes the way over it shortest (a node of the local tangent graph), and that
+    end's distance to the goal.
+    """
+    best, value, left = -1, np.inf, np.inf
+    for ray in range(RAYS):
+        edge = sight[ray] >= reach - 0.5
+        for other in (ray - 1, ray + 1):
+            edge = (
+                edge or sight[other % RAYS] > sight[ray] + 3.0 or sight[ray] > sight[other % RAYS] + 3.0
+            )
+        if not edge or sight[ray] < 1.0:
+            continue
+        angle = 2 * math.pi * ray / RAYS
+        rest = math.hypot(x + sight[ray] * math.cos(angle) - gx, y + sight[ray] * math.sin(angle) - gy)
+        if sight[ray] + rest < value:
+            best, value, left = ray, sight[ray] + rest, rest
+    return best, left
+
+
+@numba.njit(cache=True)
+def _nearest_seen(sight: FloatArray, x: float, y: float, gx: float, gy: float) -> float:
+    least = np.inf
+    for ray in range(RAYS):
+        angle = 2 * math.pi * ray / RAYS
+        least = min(
+            least,
+            math.hypot(x + sight[ray] * math.cos(angle) - gx, y + sight[ray] * math.sin(angle) - gy),
+        )
+    return least
+
+
+@numba.njit(cache=True)
+def tangent_bug(
+    free: BoolArray, x: float, y: float, gx: float, gy: float, reach: float, around: FloatArray
+) -> float:
+    """Length of the way from (x, y) to (gx, gy), all in cells; -1 if the robot finds none."""
+    length, least = 0.0, math.hypot(x - gx, y - gy)
+    for _ in range(100000):
+        if _straight(free, x, y, gx, gy):
+            return length + math.hypot(x - gx, y - gy)
+        sight = _look(free, x, y, reach)
+        ray, left = _best_end(sight, x, y, gx, gy, reach)
+        here = math.hypot(x - gx, y - gy)
+        angle = 2 * math.pi * ray / RAYS
+        if ray >= 0 and left < least - 0.5:
+            step = min(2.0, sight[ray])
+            x, y = x + step * math.cos(angle), y + step * math.sin(angle)
+            length += step
+            least = min(least, max(left, math.hypot(x - gx, y - gy)))
+            continue
+        followed = min(here, _nearest_seen(sight, x, y, gx, gy))
+        cross = math.cos(angle) * (gy - y) - math.sin(angle) * (gx - x)
+        side = -1 if cross > 0 else 1
+        column, row = round(x), round(y)
+        heading = round(math.atan2(gy - y, gx - x) / (math.pi / 4)) % 8
+        while free[row + around[heading, 1], column + around[heading, 0]]:
+            column, row = column + around[heading, 0], row + around[heading, 1]
+            length += math.hypot(around[heading, 0], around[heading, 1])
+        heading = (heading - 2 * side) % 8
+        first_column, first_row, first_heading, moved = column, row, -1, 0
+        while True:
+            turn = (heading + 2 * side) % 8
+            for _ in range(8):
+                if free[row + around[turn, 1], column + around[turn, 0]]:
+                    break
+                turn = (turn - side) % 8
+            if column == first_column and row == first_row:
+                if turn == first_heading:
+                    return -1.0
+                if first_heading < 0:
+                    first_heading = turn
+            heading = turn
+            column, row = column + around[heading, 0], row + around[heading, 1]
+            length += math.hypot(around[heading, 0], around[heading, 1])
+            moved += 1
+            if moved % 2 == 0:
+                sight = _look(free, float(column), float(row), reach)
+                if _nearest_seen(sight, float(column), float(row), gx, gy) < followed - 1.0:
+                    break
+                followed = min(followed, math.hypot(column - gx, row - gy))
+            if moved > 200000:
+                return -1.0
+        x, y = float(column), float(row)
+        least = followed
+    return -1.0

@@ -1,0 +1,133 @@
+"""A follower's way to its slot: free directions, the leader's trail, mates in the leader's view."""
+
+import math
+
+import numpy as np
+import pytest
+
+from onehop.contracts.geometry import Pose
+from onehop.contracts.scenario import GainsSection, RobotSection
+from robot_agent.core.follower import Follower
+from robot_agent.core.mates import Lookout
+from robot_agent.core.pursuit import Pursuit
+from robot_agent.core.scan import Fan
+from robot_agent.core.steering import LOOKAHEAD, Steering
+from robot_agent.core.trail import behind
+
+BODY = RobotSection()
+FAN = Fan(BODY)
+OPEN = np.full(181, np.inf, np.float32)
+
+
+def block(first, last, distance):
+    """A scan with one thing between two bearings [deg]."""
+    scan = OPEN.copy()
+    scan[90 + first : 91 + last] = distance
+    return scan
+
+
+def follower():
+    return Follower(BODY, GainsSection(), FAN, (0.3, 0.7))
+
+
+def test_the_free_direction_nearest_to_the_bearing_is_taken():
+    steering = Steering(BODY, FAN)
+    steering.look(block(-10, 30, 1.0))
+    direction, free = steering.choose(0.0, 5.0, 0)
+    assert math.degrees(direction) < -10.0
+    assert free >= 1.2
+
+
+@pytest.mark.parametrize(("side", "sign"), [(1, -1), (-1, 1)])
+def test_border_following_hugs_the_side_it_chose(side, sign):
+    steering = Steering(BODY, FAN)
+    steering.look(block(-20, 20, 1.0))
+    direction, _ = steering.choose(0.0, 5.0, side)
+    assert direction * sign > 1.0
+
+
+def test_nowhere_to_go_is_none():
+    steering = Steering(BODY, FAN)
+    steering.look(np.full(181, 0.3, np.float32))
+    assert steering.choose(0.0, 5.0, 0) is None
+
+
+def test_free_distance_is_never_longer_than_the_disc_can_go():
+    steering = Steering(BODY, FAN)
+    steering.look(block(-3, 3, 2.0))
+    assert steering.free_distance(0.0) == pytest.approx(2.0 - BODY.radius - 0.25, abs=0.01)
+    assert steering.free_distance(1.5) == LOOKAHEAD
+    assert steering.sees(1.5, 9.0)
+    assert not steering.sees(0.0, 3.0)
+
+
+def test_a_slot_behind_is_turned_to_on_the_spot_unless_reversing_is_asked_for():
+    pose, target = Pose(0.0, 0.0, 0.0), Pose(-3.0, 0.0, 0.0)
+    twist = follower().step(pose, OPEN, math.inf, target, (), 4.0, True, 1.0)
+    assert twist.v == 0.0
+    assert twist.w != 0.0
+    backing = Follower(BODY, GainsSection(reverse=True), FAN, (0.3,))
+    assert backing.step(pose, OPEN, math.inf, target, (), 4.0, True, 1.0).v == pytest.approx(-3.0)
+
+
+def test_an_obstacle_in_the_way_for_half_a_second_starts_border_following_and_no_flutter():
+    driver, pose, target = follower(), Pose(0.0, 0.0, 0.0), Pose(5.0, 0.0, 0.0)
+    wall = block(-30, 30, 1.0)
+    for tick in range(30):
+        assert driver.border or tick < 20
+        driver.step(pose, wall, 1.0, target, (), 4.0, True, 1.0)
+    assert driver.border
+    driver.step(pose, OPEN, math.inf, target, (), 4.0, True, 1.0)
+    assert driver.border, "one clear look is not the clear"
+    for _ in range(12):
+        driver.step(pose, OPEN, math.inf, target, (), 4.0, True, 1.0)
+    assert not driver.border
+
+
+def test_in_its_slot_a_robot_only_turns_to_the_leaders_heading():
+    twist = follower().step(
+        Pose(0.0, 0.0, 0.0), OPEN, math.inf, Pose(0.05, 0.0, 1.0), (), 4.0, True, 3.0
+    )
+    assert twist.v == 0.0
+    assert twist.w > 0.0
+
+
+def test_the_newest_point_of_the_trail_in_sight_is_headed_for():
+    steering = Steering(BODY, FAN)
+    pursuit = Pursuit(steering)
+    steering.look(block(40, 90, 1.0))
+    trail = ((1.0, 0.0), (3.0, 0.0), (5.0, 0.0), (5.0, 6.0))
+    aim = pursuit.aim(Pose(0.0, 0.0, 0.0), trail)
+    assert (aim.distance, aim.bearing, aim.last) == (5.0, 0.0, False)
+
+
+def test_out_of_sight_the_robot_goes_back_the_way_it_came():
+    steering = Steering(BODY, FAN)
+    pursuit = Pursuit(steering)
+    trail = ((3.0, 0.0), (5.0, 0.0))
+    steering.look(OPEN)
+    assert pursuit.watch(Pose(0.0, 0.0, 0.0), trail)
+    steering.look(np.full(181, 0.6, np.float32))
+    for y in (1.5, 3.0, 4.5):
+        assert not pursuit.watch(Pose(0.0, y, math.pi / 2), trail)
+    aim = pursuit.aim(Pose(0.0, 4.6, math.pi / 2), trail)
+    assert abs(aim.bearing) > 3.0, "its own last point lies behind it"
+    assert aim.distance < 2.0
+
+
+def test_a_column_drives_on_the_leaders_way_around_a_corner():
+    trail = ((0.0, 0.0), (4.0, 0.0), (4.0, 3.0))
+    pose = behind(Pose(4.0, 3.0, math.pi / 2), trail, 4.0)
+    assert (pose.x, pose.y, pose.heading) == pytest.approx((3.0, 0.0, 0.0))
+    before = behind(Pose(4.0, 3.0, math.pi / 2), trail, 9.0)
+    assert (before.x, before.y) == pytest.approx((-2.0, 0.0))
+
+
+def test_a_follower_is_told_from_a_wall_and_from_a_pillar_where_nobody_is():
+    lookout = Lookout(BODY, FAN)
+    scan = OPEN.copy()
+    scan[88:93] = 3.0  # 0.2 m wide: a robot
+    scan[20:60] = 3.0  # 2 m wide: a wall
+    here = Pose(0.0, 0.0, 0.0)
+    assert lookout.beams(here, scan, [(3.2, 0.0)], 1.0) == frozenset(range(88, 93))
+    assert lookout.beams(here, scan, [(8.0, 5.0)], 1.0) == frozenset()
