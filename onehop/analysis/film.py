@@ -40,8 +40,8 @@ Pixels = npt.NDArray[np.uint8]
 def write_film(log: Log, path: Path) -> None:
     """Write a film; the suffix says the format, .gif or .mp4.
 
-    Raises InputError for another suffix, for mp4 without imageio-ffmpeg (the extra `film`), and for a log
-    without a tick.
+    Raises InputError for another suffix, for mp4 without imageio-ffmpeg (the extra `film`), and for a
+    log without a tick.
     """
     if path.suffix == ".gif":
         _write_gif(log, path)
