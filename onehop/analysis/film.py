@@ -40,7 +40,8 @@ Pixels = npt.NDArray[np.uint8]
 def write_film(log: Log, path: Path) -> None:
     """Write a film; the suffix says the format, .gif or .mp4.
 
-    Raises InputError for another suffix, or for mp4 without imageio-ffmpeg (the extra `film`).
+    Raises InputError for another suffix, for mp4 without imageio-ffmpeg (the extra `film`), and for a
+    log without a tick.
     """
     if path.suffix == ".gif":
         _write_gif(log, path)
@@ -101,6 +102,8 @@ class _Stage:
         self._log = log
         tables = log.tables("poses", "status")
         self._colours = robot_colours(log.robots)
+        if not len(tables["poses"]):
+            raise InputError(str(log.path), "has not one tick to show", "give a log of a longer mission")
         self._ticks, self._places, self._headings = _tracks(tables["poses"], log.robots)
         self._leaders = _leaders(tables["status"], log.robots, self._ticks)
         figure = Figure(figsize=(7.2, 7.2), dpi=100)

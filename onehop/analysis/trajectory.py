@@ -176,7 +176,7 @@ def _draw_departure(axes: Axes, departure: Departure, colour: str) -> None:
 
 def _draw_reigns(axes: Axes, poses: Table, line: list[Reign], colours: dict[int, str]) -> None:
     """A ring where somebody takes the lead over from another; those that lasted have their name."""
-    ends = [reign.at_s for reign in line[1:]] + [np.inf]
+    ends = [*(reign.at_s for reign in line[1:]), np.inf] if line else []
     previous: int | None = None
     named: list[tuple[float, float]] = []
     for reign, end_s in zip(line, ends, strict=True):

@@ -99,7 +99,7 @@ def _look(mode: str, colour: str) -> tuple[tuple[float, float, float, float], st
 
 def _draw_reigns(axes: Axes, material: Material, rows: int) -> None:
     reigns = material.line
-    ends = [*(reign.at_s for reign in reigns[1:]), material.end_s]
+    ends = [*(reign.at_s for reign in reigns[1:]), material.end_s] if reigns else []
     times = np.array([reign.at_s for reign in reigns])
     for names, row in (
         ([f"{reign.leader}" for reign in reigns], rows),

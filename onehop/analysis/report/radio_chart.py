@@ -81,7 +81,13 @@ def _draw_bytes(axes: Axes, material: Material) -> None:
     order = np.sort(first)
     times = np.append(verdicts["time_s"][order], material.end_s)
     total = np.cumsum(verdicts["msdu_bytes"][order]) / 1e3
-    axes.step(times, np.append(total, total[-1:]), where="post", color=INK, label="team's messages")
+    axes.step(
+        times,
+        np.append(total, total[-1:] if len(total) else 0.0),
+        where="post",
+        color=INK,
+        label="team's messages",
+    )
     for number, kind in enumerate(np.unique(control["kind"]).tolist()):
         own = control.where(control["kind"] == kind)
         axes.plot(

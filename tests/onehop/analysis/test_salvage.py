@@ -12,6 +12,7 @@ from onehop.analysis.salvage import salvage
 from onehop.analysis.selection import walk
 from onehop.contracts.errors import LogError
 from onehop.drive.log_reader import LogFile, Tick
+from onehop.drive.log_writer import LogWriter
 
 
 def ticks(path: Path) -> list[Tick]:
@@ -53,6 +54,21 @@ def test_what_was_readable_is_saved_but_for_the_unfinished_tick(log_path: Path, 
     assert len(ticks(saved)) in (len(readable), len(readable) - 1)
     missing = sum(len(t.messages) for t in readable) - sum(len(t.messages) for t in ticks(saved))
     assert told.given_up == missing
+
+
+def test_an_unfinished_tick_is_given_up_and_counted(log_path: Path, tmp_path: Path) -> None:
+    source = LogFile(log_path)
+    first, second, *_ = source.ticks()
+    torn, saved = tmp_path / "torn.mcap", tmp_path / "saved.mcap"
+    writer = LogWriter(tmp_path / "growing.mcap", source.bundle, "inline")
+    writer.write(first.tick, first.messages)
+    writer.write(second.tick, second.messages[:-1])
+    writer.flush()
+    torn.write_bytes((tmp_path / "growing.mcap").read_bytes())
+    writer.close(None)
+    told = salvage(torn, saved)
+    assert (told.last_tick, told.given_up) == (first.tick, len(second.messages) - 1)
+    assert ticks(saved) == [first]
 
 
 def test_a_damaged_log_is_saved_up_to_the_damage(log_path: Path, tmp_path: Path) -> None:
