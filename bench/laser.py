@@ -13,7 +13,7 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
-from onehop.contracts.scenario import MapSection, Point, RobotSection
+from onehop.contracts.sections import MapSection, Point, RobotSection
 from world_server.core.laser import Laser
 from world_server.core.mapfile import load_map
 from world_server.core.walls import FloatArray, WallMap

@@ -26,15 +26,14 @@ from tangent_bug import AROUND, tangent_bug
 from onehop.analysis.shortest import KnownMap, way_length
 from onehop.contracts.geometry import Pose
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import (
+from onehop.contracts.scenario import Scenario, robot_briefing
+from onehop.contracts.sections import (
     ClockSection,
     GoalSection,
     MapSection,
     PlannerSection,
     RobotSection,
-    Scenario,
     StartSection,
-    robot_briefing,
 )
 from onehop.drive.solo import solo
 from robot_agent.core.planning import make_pathfinder

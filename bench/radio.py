@@ -12,7 +12,8 @@ from dataclasses import replace
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Fate, Offer, Presence, Transmission, Truth
-from onehop.contracts.scenario import RadioBriefing, RadioSection
+from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.scenario import RadioBriefing
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.propagation import link_budget
 from radio_proxy.core.radio import Radio

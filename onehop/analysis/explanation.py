@@ -17,7 +17,7 @@ from onehop.analysis.tables import Table
 from onehop.analysis.timeline import departures
 from onehop.contracts.errors import InputError
 from onehop.contracts.messages import Truth
-from onehop.contracts.scenario import GainsSection, TeamSection
+from onehop.contracts.sections import GainsSection, TeamSection
 from robot_agent.core.messages import Command
 
 WINDOW_S = 6.0

@@ -12,7 +12,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from onehop.contracts.scenario import Point
+from onehop.contracts.sections import Point
 from world_server.core.walls import BoolArray, FloatArray, WallMap
 
 _STEPS = np.array(

@@ -6,7 +6,7 @@ import numpy as np
 
 from onehop.analysis.tables import Column, Table
 from onehop.contracts.messages import Reign
-from onehop.contracts.scenario import FaultSection
+from onehop.contracts.sections import FaultSection
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,7 +7,7 @@ out: short preamble, EIFS (neither Bianchi's nor the thesis's sums have it).
 from dataclasses import dataclass
 
 from onehop.contracts import airtime
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 
 SPEED_OF_LIGHT = 299_792_458.0
 """Propagation speed of radio waves [m/s] (thesis eq. 3.22)."""

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, replace
 
 from onehop.contracts.messages import Cut, Jam, Presence
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import delay_ns
 
 WAVE_SPEED = 3.0e8

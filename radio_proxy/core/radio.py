@@ -20,8 +20,9 @@ from onehop.contracts.messages import (
     Truth,
     Verdict,
 )
+from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import RadioBriefing, RadioSection
+from onehop.contracts.scenario import RadioBriefing
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.contention import EVERYONE, Frame
 from radio_proxy.core.dcf import Dcf

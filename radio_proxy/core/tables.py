@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from onehop.contracts.airtime import ideal_throughput_bps, threshold_bps
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss, printed_throughput_bps
 from radio_proxy.core.closed_forms import bianchi_normalized, frame_probability
 from radio_proxy.core.error_rates import bit_error_rate, thesis_ber

@@ -16,7 +16,7 @@ from collections.abc import Sequence
 
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Ranges
-from onehop.contracts.scenario import GainsSection, RobotSection
+from onehop.contracts.sections import GainsSection, RobotSection
 from robot_agent.core.pursuit import Pursuit
 from robot_agent.core.scan import Fan
 from robot_agent.core.steering import LOOKAHEAD, Steering

@@ -5,7 +5,7 @@ A policy hears one throughput for each Next that came, and 0 for each that did n
 
 from typing import Protocol
 
-from onehop.contracts.scenario import GainsSection
+from onehop.contracts.sections import GainsSection
 
 FILTER_SHARE = 0.5
 """Weight of the newest measurement in the smooth policy's filter: two Next periods of memory."""

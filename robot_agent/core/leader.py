@@ -14,7 +14,8 @@ import numpy as np
 
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map, wrap_angle
 from onehop.contracts.messages import Note, Ranges
-from onehop.contracts.scenario import Briefing, GainsSection
+from onehop.contracts.scenario import Briefing
+from onehop.contracts.sections import GainsSection
 from onehop.contracts.team import Mode
 from robot_agent.core.formation import formation, width
 from robot_agent.core.mates import Lookout

@@ -12,7 +12,7 @@ import numpy as np
 
 from onehop.contracts.geometry import Pose, to_map
 from onehop.contracts.messages import Ranges
-from onehop.contracts.scenario import RobotSection
+from onehop.contracts.sections import RobotSection
 from robot_agent.core.scan import Fan
 
 JUMP = 0.3

@@ -18,7 +18,7 @@ import numpy as np
 
 from onehop.contracts.geometry import Twist
 from onehop.contracts.messages import Ranges
-from onehop.contracts.scenario import RobotSection
+from onehop.contracts.sections import RobotSection
 from robot_agent.core.scan import Fan
 
 MARGIN = 0.05

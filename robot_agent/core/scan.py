@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts.messages import Ranges
-from onehop.contracts.scenario import RobotSection
+from onehop.contracts.sections import RobotSection
 
 FloatArray = npt.NDArray[np.float64]
 

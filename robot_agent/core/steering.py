@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts.messages import Ranges
-from onehop.contracts.scenario import RobotSection
+from onehop.contracts.sections import RobotSection
 from robot_agent.core.scan import Fan
 
 LOOKAHEAD = 2.5

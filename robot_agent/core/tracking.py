@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
-from onehop.contracts.scenario import GainsSection, RobotSection
+from onehop.contracts.sections import GainsSection, RobotSection
 
 HALF_TURN = math.pi / 2.0
 

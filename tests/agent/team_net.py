@@ -12,15 +12,8 @@ import numpy as np
 
 from onehop.contracts.geometry import Pose, Twist, wrap_angle
 from onehop.contracts.messages import BROADCAST, Action, Note, Percept, Ranges, Reception
-from onehop.contracts.scenario import (
-    Briefing,
-    ClockSection,
-    GoalSection,
-    MapSection,
-    Scenario,
-    TeamSection,
-    robot_briefing,
-)
+from onehop.contracts.scenario import Briefing, Scenario, robot_briefing
+from onehop.contracts.sections import ClockSection, GoalSection, MapSection, TeamSection
 from onehop.contracts.team import Mode, Status
 from robot_agent.core.formation import formation, median_leader
 from robot_agent.core.planning import Guidance, Pathfinder, Progress

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from onehop.contracts.geometry import Pose
-from onehop.contracts.scenario import GainsSection, RobotSection
+from onehop.contracts.sections import GainsSection, RobotSection
 from robot_agent.core.follower import Follower
 from robot_agent.core.mates import Lookout
 from robot_agent.core.pursuit import Pursuit

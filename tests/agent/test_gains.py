@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.scenario import GainsSection
+from onehop.contracts.sections import GainsSection
 from robot_agent.core.gains import make_policy
 
 THRESHOLD = 0.5333e6  # thesis 3.8.3

@@ -6,7 +6,7 @@ import itertools
 import pytest
 
 from onehop.contracts.geometry import Pose
-from onehop.contracts.scenario import TeamSection
+from onehop.contracts.sections import TeamSection
 from onehop.contracts.team import Mode, Shape
 from robot_agent.core.leading import Acquaintances
 from robot_agent.core.messages import Beacon, Command, Join, Order, Phase, encode

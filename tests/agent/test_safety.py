@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onehop.contracts.geometry import Pose, Twist, wrap_angle
-from onehop.contracts.scenario import RobotSection
+from onehop.contracts.sections import RobotSection
 from robot_agent.core.safety import MARGIN, SafetyFilter
 from robot_agent.core.scan import Fan
 

@@ -12,7 +12,7 @@ import hypothesis.strategies as st
 from hypothesis import HealthCheck, settings
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, precondition, rule
 
-from onehop.contracts.scenario import TeamSection
+from onehop.contracts.sections import TeamSection
 from tests.agent.team_net import PERIOD_MS, TeamNet
 
 SEQUENCES = int(os.environ.get("ONEHOP_SEQUENCES", "40"))

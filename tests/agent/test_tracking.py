@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.scenario import GainsSection, RobotSection
+from onehop.contracts.sections import GainsSection, RobotSection
 from robot_agent.core.tracking import polar_error, polar_twist, turn_towards, within_limits
 
 GAINS = GainsSection()

@@ -2,7 +2,8 @@
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Cut, Jam, Offer, Presence, Transmission, Truth, Verdict
-from onehop.contracts.scenario import RadioBriefing, RadioSection
+from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.scenario import RadioBriefing
 from radio_proxy.core.radio import Radio
 
 PERIOD = 50_000_000

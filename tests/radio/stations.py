@@ -2,8 +2,8 @@
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Cut, Presence
+from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import RadioSection
 from radio_proxy.core.airtime import Timing, dsss
 from radio_proxy.core.contention import Frame
 from radio_proxy.core.dcf import Dcf

@@ -9,7 +9,7 @@ from onehop.contracts.airtime import (
     mean_backoff_us,
     threshold_bps,
 )
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import (
     collision_us,
     delay_ns,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.closed_forms import (
     SaturatedLink,

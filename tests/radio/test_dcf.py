@@ -3,7 +3,7 @@
 import pytest
 
 from onehop.contracts.messages import Cut, Fate
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.contention import EVERYONE
 from radio_proxy.core.propagation import link_budget

@@ -6,7 +6,7 @@ import pytest
 
 from onehop.contracts.airtime import THESIS_THRESHOLD_BPS
 from onehop.contracts.messages import Cut, Fate, Jam, Reception, Verdict
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from tests.radio.missions import Mission, line, message
 
 NS3_AODV_MS = (7.542, 15.398, 23.255)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Cut, Jam, Presence
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.propagation import (
     OWN_DB,
     REACH_DB,

@@ -3,7 +3,7 @@
 import pytest
 
 from onehop.contracts.messages import BROADCAST, Cut, Fate
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from tests.radio.missions import PERIOD, Mission, line, message
 
 STILL = RadioSection(routing="direct", shadowing_db=0.0, mac_header_bytes=28)

@@ -12,7 +12,7 @@ from hypothesis.stateful import (
 )
 
 from onehop.contracts.messages import BROADCAST, Cut, Fate, Jam, Transmission, Verdict
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss
 from tests.radio.missions import PERIOD, Mission, Outboxes, message
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import Timing, dsss
 from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized, threshold_probability
 from radio_proxy.core.propagation import link_budget

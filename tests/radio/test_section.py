@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 
 
 def test_the_defaults_are_sound() -> None:

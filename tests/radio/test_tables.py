@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.scenario import RadioSection
+from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.tables import link_table, saturation_table
 
 

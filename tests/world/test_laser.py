@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from onehop.contracts.scenario import MapSection, RobotSection
+from onehop.contracts.sections import MapSection, RobotSection
 from world_server.core.grid import Frame, grid_map
 from world_server.core.laser import _SLACK, Laser, _direction
 from world_server.core.mapfile import load_map

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from onehop.contracts.errors import MapError
-from onehop.contracts.scenario import MapSection
+from onehop.contracts.sections import MapSection
 from world_server.core.grid import Frame, grid_map
 from world_server.core.mapfile import load_map, map_files
 from world_server.core.walls import WallMap

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onehop.contracts.scenario import MapSection, RobotSection
+from onehop.contracts.sections import MapSection, RobotSection
 from world_server.core.mapfile import load_map
 from world_server.core.motion import NOBODY, WALL, Motion
 from world_server.core.walls import FloatArray, WallMap

@@ -9,7 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onehop.contracts.errors import ScenarioError
-from onehop.contracts.scenario import GoalSection, MapSection, Scenario, StartSection, TeamSection
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import GoalSection, MapSection, StartSection, TeamSection
 from world_server.core.mapfile import load_map
 from world_server.core.placement import start_poses
 

@@ -4,7 +4,8 @@ import pytest
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Lost, Note, Outcome, Presence, Reign
-from onehop.contracts.scenario import ClockSection, GoalSection, MapSection, Scenario, TeamSection
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import ClockSection, GoalSection, MapSection, TeamSection
 from onehop.contracts.team import Mode, Shape, Status
 from world_server.core.referee import Referee, Scene
 

@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from onehop.contracts.scenario import GoalSection, MapSection, Scenario, StartSection
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import GoalSection, MapSection, StartSection
 from world_server.core.mapfile import load_map
 from world_server.core.placement import start_poses
 from world_server.core.walls import WallMap

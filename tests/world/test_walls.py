@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onehop.contracts.scenario import MapSection
+from onehop.contracts.sections import MapSection
 from world_server.core.mapfile import load_map
 from world_server.core.walls import WallMap, gap_between, segment_distances
 

@@ -7,15 +7,15 @@ import pytest
 
 from onehop.contracts.geometry import Twist
 from onehop.contracts.messages import Action, Contact, Departure, Note, Transmission
-from onehop.contracts.scenario import (
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import (  # fmt: skip
     ClockSection,
     FaultSection,
     GoalSection,
     MapSection,
-    Scenario,
     StartSection,
     TeamSection,
-)  # fmt: skip
+)
 from onehop.contracts.team import Mode, Shape, Status
 from world_server.core.mapfile import load_map
 from world_server.core.world import World

@@ -7,7 +7,7 @@ their duration, or to the next heal, or to the end. Everything changes at tick b
 from dataclasses import dataclass
 
 from onehop.contracts.messages import Cut, Jam
-from onehop.contracts.scenario import FaultSection
+from onehop.contracts.sections import FaultSection
 
 
 @dataclass(frozen=True, slots=True)

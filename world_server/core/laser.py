@@ -14,7 +14,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from onehop.contracts.scenario import RobotSection
+from onehop.contracts.sections import RobotSection
 from world_server.core.cells import CellList, IntArray, cell_at, cell_list
 from world_server.core.walls import FloatArray, WallMap
 

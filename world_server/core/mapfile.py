@@ -7,7 +7,7 @@ contents to `load_map`.
 from collections.abc import Mapping
 
 from onehop.contracts.errors import MapError
-from onehop.contracts.scenario import MapSection
+from onehop.contracts.sections import MapSection
 from world_server.core.movingai import movingai_map
 from world_server.core.polygons import polygon_map
 from world_server.core.rosmap import ros_image, ros_map

@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts.geometry import TAU
-from onehop.contracts.scenario import RobotSection
+from onehop.contracts.sections import RobotSection
 from world_server.core.cells import CellList, cell_at, cell_list, point_gap
 from world_server.core.walls import BoolArray, FloatArray, WallMap
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from onehop.contracts.scenario import MapSection, Point
+from onehop.contracts.sections import MapSection, Point
 from world_server.core.walls import BoolArray, FloatArray, WallMap
 
 

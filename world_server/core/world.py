@@ -21,7 +21,8 @@ from onehop.contracts.messages import (
     Presence,
     Truth,
 )
-from onehop.contracts.scenario import FaultSection, Scenario
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import FaultSection
 from onehop.contracts.team import Status
 from world_server.core.contacts import Touches
 from world_server.core.faults import Faults

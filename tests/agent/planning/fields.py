@@ -4,13 +4,13 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
-from onehop.contracts.scenario import (
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import (
     ClockSection,
     GoalSection,
     MapSection,
     PlannerSection,
     Point,
-    Scenario,
     StartSection,
 )
 from world_server.core.mapfile import load_map

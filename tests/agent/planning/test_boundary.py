@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from onehop.contracts.geometry import Pose
-from onehop.contracts.scenario import RobotSection
+from onehop.contracts.sections import RobotSection
 from robot_agent.core.planning.boundary import _pivot, settle, trace
 from robot_agent.core.planning.view import View
 from robot_agent.core.scan import Fan, FloatArray

@@ -8,7 +8,8 @@ import pytest
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import RobotSection, robot_briefing
+from onehop.contracts.scenario import robot_briefing
+from onehop.contracts.sections import RobotSection
 from onehop.drive.solo import Solo, solo
 from robot_agent.core.planning import Progress, make_pathfinder
 from robot_agent.core.planning.escape import Escape, Phase

@@ -9,7 +9,7 @@ import pytest
 
 from onehop.contracts.geometry import Pose
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import MapSection, RobotSection
+from onehop.contracts.sections import MapSection, RobotSection
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
 from robot_agent.core.planning.view import (

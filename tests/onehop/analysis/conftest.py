@@ -5,12 +5,12 @@ from pathlib import Path
 import pytest
 
 from onehop.analysis import Log, open_log
-from onehop.contracts.scenario import (
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import (
     ClockSection,
     FaultSection,
     GoalSection,
     MapSection,
-    Scenario,
     StartSection,
     TeamSection,
 )
