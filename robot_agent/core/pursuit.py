@@ -23,6 +23,13 @@ REACHED = 0.7
 CRUMB_STEP, MEMORY = 1.0, 128
 """Spacing [m] and greatest number of the remembered points of each way."""
 
+ADVANCE = 60
+"""Decisions for which a point that slipped out of sight is still headed for before the robot goes back:
+rounding a corner hides it for a moment."""
+
+FAR_CRUMBS = 5
+"""So many metres from where the trail was in sight the robot goes back at once."""
+
 Point = tuple[float, float]
 
 
@@ -45,6 +52,7 @@ class Pursuit:
         self._told: Sequence[Point] = ()
         self._way: list[Point] = []
         self._crumbs: list[Point] = []
+        self._patience = ADVANCE
 
     def watch(self, pose: Pose, trail: Sequence[Point]) -> bool:
         """Remember the newest point in sight, or how to get back; whether one is in sight."""
@@ -54,7 +62,7 @@ class Pursuit:
         for place in range(len(self._way) - 1, -1, -1):
             if self._in_sight(pose, self._way[place]):
                 del self._way[:place]
-                self._crumbs = [here]
+                self._crumbs, self._patience = [here], ADVANCE
                 return True
         away = [math.dist(here, crumb) for crumb in self._crumbs]
         back = next((k for k, distance in enumerate(away) if distance < REACHED), None)
@@ -63,6 +71,8 @@ class Pursuit:
         elif away and away[-1] > CRUMB_STEP:
             self._crumbs.append(here)
             del self._crumbs[:-MEMORY]
+            if len(self._crumbs) > FAR_CRUMBS:
+                self._patience = min(self._patience, 0)
         return False
 
     def aim(self, pose: Pose, trail: Sequence[Point]) -> Aim | None:
@@ -71,7 +81,10 @@ class Pursuit:
         way = self._way
         if not way:
             return None
-        if not in_sight and len(self._crumbs) > 1:
+        self._patience = ADVANCE if in_sight else self._patience - 1
+        if len(self._crumbs) == 1 and self._patience < 0:
+            self._patience = ADVANCE
+        if self._patience < 0 and self._crumbs:
             seen = (crumb for crumb in self._crumbs if self._in_sight(pose, crumb))
             return self._aimed(pose, next(seen, self._crumbs[-1]), False, True)
         if not in_sight and not self._crumbs:

@@ -108,11 +108,21 @@ def test_out_of_sight_the_robot_goes_back_the_way_it_came():
     steering.look(OPEN)
     assert pursuit.watch(Pose(0.0, 0.0, 0.0), trail)
     steering.look(np.full(181, 0.6, np.float32))
-    for y in (1.5, 3.0, 4.5):
+    for y in (1.5, 3.0, 4.5, 6.0, 7.5):
         assert not pursuit.watch(Pose(0.0, y, math.pi / 2), trail)
-    aim = pursuit.aim(Pose(0.0, 4.6, math.pi / 2), trail)
+    aim = pursuit.aim(Pose(0.0, 7.6, math.pi / 2), trail)
     assert abs(aim.bearing) > 3.0, "its own last point lies behind it"
     assert aim.distance < 2.0
+
+
+def test_a_point_that_slips_out_of_sight_at_a_corner_is_still_headed_for():
+    steering = Steering(BODY, FAN)
+    pursuit = Pursuit(steering)
+    steering.look(OPEN)
+    assert pursuit.watch(Pose(0.0, 0.0, 0.0), ((3.0, 0.0), (5.0, 0.0)))
+    steering.look(np.full(181, 0.6, np.float32))
+    aim = pursuit.aim(Pose(1.5, 0.0, 0.0), ((3.0, 0.0), (5.0, 0.0)))
+    assert (aim.distance, aim.known, aim.last) == (3.5, True, True)
 
 
 def test_a_column_drives_on_the_leaders_way_around_a_corner():
