@@ -1,7 +1,7 @@
 """The recorder process: everything on the bus into one MCAP file, as it happens.
 
-World and radio hand it one batch per tick. It writes complete ticks in canonical order, flushes them to
-the operating system and tells the world how far the file is; the world never runs more than a few ticks
+The world hands it one batch per tick. It writes ticks in canonical order, flushes them to the operating
+system and tells the world how far the file is; the world never runs more than a few ticks
 ahead. With --no-file it only makes the digest.
 """
 
@@ -39,7 +39,7 @@ def main() -> int:
     options = parser.parse_args()
     node.start(options)
     with node.connect(options, topics.RECORDER) as bus:
-        bus.subscribe(topics.record("*"))
+        bus.subscribe(topics.RECORD)
         bus.subscribe(topics.END)
         bus.watch(topics.alive(topics.WORLD))
         briefing = decode(LogBriefing, node.briefing(bus, topics.RECORDER))
@@ -77,7 +77,7 @@ class _Recorder:
                 break
             self._take(key, data)
         deadline = time.monotonic() + LAST_WORDS_S
-        while self._end is not None and self._journal.complete < self._end.last_tick:
+        while self._end is not None and self._journal.last_tick < self._end.last_tick:
             received = self._bus.receive(max(0.0, deadline - time.monotonic()))
             if received is None:
                 break
@@ -87,13 +87,10 @@ class _Recorder:
     def _take(self, key: str, data: bytes) -> None:
         if key == topics.END:
             self._end = decode(End, data)
-        elif key.startswith(topics.record("")):
+        elif key == topics.RECORD:
             self._journal.add(*unpack_record(data))
 
     def _finish(self) -> int:
-        if self._log is not None:
-            for tick, messages in self._journal.rest():
-                self._log.write(tick, messages)
         summary: dict[str, Any] | None = None
         if self._end is not None:
             log = str(self._path) if self._path is not None else None

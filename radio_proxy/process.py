@@ -1,4 +1,4 @@
-"""The shell of the radio: hear the truth of a tick, carry what was offered, put every inbox."""
+"""The shell of the radio: hear the truth of a tick, carry what was offered, put all inboxes."""
 
 from onehop.contracts import topics
 from onehop.contracts.messages import Truth
@@ -20,28 +20,24 @@ def main() -> int:
         bus.subscribe(topics.TRUTH)
         bus.subscribe(topics.END)
         bus.watch(topics.alive(topics.WORLD))
-        briefing = decode(RadioBriefing, node.briefing(bus, topics.RADIO))
-        radio = Radio(briefing)
+        radio = Radio(decode(RadioBriefing, node.briefing(bus, topics.RADIO)))
         node.calm_garbage_collector()
-        return _serve(bus, radio, briefing.robots)
+        return _serve(bus, radio)
 
 
-def _serve(bus: Bus, radio: Radio, robots: tuple[int, ...]) -> int:
-    put_inbox = {i: bus.publisher(topics.rx(i)) for i in robots}
-    put_record = bus.publisher(topics.record(topics.RADIO), express=False)
+def _serve(bus: Bus, radio: Radio) -> int:
+    put = bus.publisher(topics.AIR)
     bus.announce(topics.RADIO)
     while True:
         key, data = bus.inbox.get()
         if key == topics.TRUTH:
             truth = decode(Truth, data)
             carried = radio.carry(truth)
-            record: list[WireMessage] = []
-            for i, inbox in carried.inboxes.items():
-                encoded = encode(inbox)
-                put_inbox[i](encoded)
-                record.append((topics.rx(i), encoded))
-            record.append((topics.ETHER, encode(carried.ether)))
-            put_record(pack_record(truth.tick, record))
+            messages: list[WireMessage] = [
+                (topics.rx(i), encode(inbox)) for i, inbox in carried.inboxes.items()
+            ]
+            messages.append((topics.ETHER, encode(carried.ether)))
+            put(pack_record(truth.tick, messages))
         elif key == topics.END:
             return 0
         elif data is GONE:

@@ -1,7 +1,4 @@
-"""The shell of one robot: hear an observation and an inbox, step the core, put the action.
-
-Lock-step: an action is put as soon as observation and inbox of the same tick are there, never before.
-"""
+"""The shell of one robot: hear its observation and inbox of a tick, step the core, put the action."""
 
 import os
 import signal
@@ -12,6 +9,7 @@ from onehop.contracts.scenario import Briefing
 from onehop.drive import node
 from onehop.drive.bus import GONE, Bus
 from onehop.drive.codec import decode, encode
+from onehop.drive.record import unpack_record
 from robot_agent.core.robot import Robot
 
 
@@ -23,7 +21,7 @@ def main() -> int:
     node.start(options)
     name = topics.robot_name(options.id)
     with node.connect(options, name) as bus:
-        for key in (topics.obs, topics.rx, topics.fate):
+        for key in (topics.percept, topics.fate):
             bus.subscribe(key(options.id))
         bus.subscribe(topics.END)
         bus.watch(topics.alive(topics.WORLD))
@@ -34,24 +32,16 @@ def main() -> int:
 
 def _serve(bus: Bus, robot: Robot, identity: int, name: str) -> int:
     put = bus.publisher(topics.out(identity))
-    obs_key, rx_key, fate_key = (key(identity) for key in (topics.obs, topics.rx, topics.fate))
-    observation: Observation | None = None
-    inbox: Inbox | None = None
+    percept_key, fate_key = topics.percept(identity), topics.fate(identity)
     bus.announce(name)
     while True:
         key, data = bus.inbox.get()
-        if key == obs_key:
-            observation = decode(Observation, data)
-        elif key == rx_key:
-            inbox = decode(Inbox, data)
+        if key == percept_key:
+            _, ((_, seen), (_, heard)) = unpack_record(data)
+            put(encode(robot.step(percept(decode(Observation, seen), decode(Inbox, heard)))))
         elif key == fate_key:
             os.kill(os.getpid(), signal.SIGKILL)
         elif key == topics.END:
             return 0
-        elif key == topics.alive(topics.WORLD):
-            if data is GONE:
-                return 1
-            continue
-        if observation is not None and inbox is not None and observation.tick == inbox.tick:
-            put(encode(robot.step(percept(observation, inbox))))
-            observation = inbox = None
+        elif data is GONE:
+            return 1

@@ -1,9 +1,9 @@
 """The shell of the world in lock-step: it holds the clock, and everyone else waits for its tick.
 
-For tick k it puts truth(k) and every obs(k), waits for out(k) of every robot that truth(k) called
-present, and lets the world advance. A robot whose token vanishes, who stays silent too long or puts
-something that is no action of this tick is fenced: truth(k+1) leaves it out. Without its radio or its
-recorder a mission has no meaning: it ends as aborted.
+For tick k it puts truth(k), waits for the inboxes that the radio makes of it, puts every percept(k),
+waits for out(k) of every robot that truth(k) called present, and lets the world advance. A robot whose
+token vanishes, who stays silent too long or puts something that is no action of this tick is fenced:
+truth(k+1) leaves it out. Without its radio or its recorder a mission has no meaning: it is aborted.
 """
 
 import argparse
@@ -22,7 +22,7 @@ from onehop.drive.briefings import LogBriefing, radio_briefing
 from onehop.drive.bus import ALIVE, GONE, Bus, open_router
 from onehop.drive.codec import decode, encode
 from onehop.drive.journal import WireMessage
-from onehop.drive.record import pack_record
+from onehop.drive.record import pack_record, unpack_record
 from onehop.scenario_file import Bundle
 from world_server.core.mapfile import load_map
 from world_server.core.world import World
@@ -87,6 +87,8 @@ class _Host:
         self._names = {topics.alive(topics.robot_name(i)): i for i in robots}
         self._alive: set[str] = set()
         self._recorded = -1
+        self._last_tick = -1
+        self._air: bytes | None = None
         self._actions: dict[int, tuple[Action, bytes]] = {}
         self._awaited: set[int] = set()
         self._fenced: dict[int, str] = {}
@@ -100,9 +102,9 @@ class _Host:
             ),
         }
         self._put_truth = bus.publisher(topics.TRUTH)
-        self._put_obs = {i: bus.publisher(topics.obs(i)) for i in robots}
+        self._put_percept = {i: bus.publisher(topics.percept(i)) for i in robots}
         self._put_fate = {i: bus.publisher(topics.fate(i)) for i in robots}
-        self._put_record = bus.publisher(topics.record(topics.WORLD), express=False)
+        self._put_record = bus.publisher(topics.RECORD, express=False)
         self._put_progress = bus.publisher(topics.PROGRESS, express=False)
         self._put_restart = bus.publisher(topics.RESTART)
         self._put_end = bus.publisher(topics.END)
@@ -112,6 +114,7 @@ class _Host:
         signal.signal(signal.SIGTERM, self._on_sigterm)
         bus = self._bus
         bus.subscribe(topics.out("*"))
+        bus.subscribe(topics.AIR)
         bus.subscribe(topics.RECORDED)
         bus.subscribe(topics.CONTROL)
         bus.watch(topics.alive("*"))
@@ -126,7 +129,7 @@ class _Host:
         except _InterruptedError as interruption:
             outcome = self._world.aborted(interruption.reason)
         wall_s = time.monotonic() - started
-        self._put_end(encode(End(outcome, self._world.tick, wall_s)))
+        self._put_end(encode(End(outcome, self._last_tick, wall_s)))
         self._await_farewell()
         return 0
 
@@ -161,21 +164,39 @@ class _Host:
         truth = world.truth()
         self._carry_out_faults(truth)
         encoded_truth = encode(truth)
+        self._air = None
         self._put_truth(encoded_truth)
-        record: list[WireMessage] = [(topics.TRUTH, encoded_truth)]
-        for i, observation in world.observe().items():
-            encoded = encode(observation)
-            self._put_obs[i](encoded)
-            record.append((topics.obs(i), encoded))
+        seen = [(topics.obs(i), encode(observation)) for i, observation in world.observe().items()]
+        air = self._await_air()
+        heard = dict(air)
+        for presence, observation in zip(truth.present, seen, strict=True):
+            inbox = topics.rx(presence.robot)
+            percept = pack_record(truth.tick, [observation, (inbox, heard[inbox])])
+            self._put_percept[presence.robot](percept)
         self._collect(truth)
-        record += [(topics.out(i), self._actions[i][1]) for i in sorted(self._actions)]
-        self._put_record(pack_record(truth.tick, record))
+        done = [(topics.out(i), self._actions[i][1]) for i in sorted(self._actions)]
+        self._put_record(pack_record(truth.tick, [(topics.TRUTH, encoded_truth), *air, *seen, *done]))
+        self._last_tick = truth.tick
         world.advance({i: self._actions[i][0] for i in sorted(self._actions)})
         for i in sorted(self._fenced):
             world.fence(i, self._fenced[i])
         self._fenced.clear()
         self._report_progress(truth)
         return world.outcome()
+
+    def _await_air(self) -> list[WireMessage]:
+        """Inboxes and record of this tick, from the radio."""
+        deadline = time.monotonic() + self._scenario.clock.silence_s
+        while self._air is None:
+            if self._stop:
+                raise _InterruptedError(self._stop)
+            self._hear(deadline)
+            if time.monotonic() > deadline:
+                raise _InterruptedError(f"the radio is silent for {self._scenario.clock.silence_s:g} s")
+        tick, messages = unpack_record(self._air)
+        if tick != self._world.tick:
+            raise _InterruptedError(f"the radio answers for tick {tick}, not {self._world.tick}")
+        return messages
 
     def _collect(self, truth: Truth) -> None:
         """Wait for the action of every present robot; fence those who cannot give it."""
@@ -203,6 +224,8 @@ class _Host:
         key, data = received
         if key == topics.RECORDED:
             self._recorded = int.from_bytes(data, "little")
+        elif key == topics.AIR:
+            self._air = data
         elif key == topics.CONTROL:
             self._stop = "stopped by the operator"
         elif data is ALIVE:

@@ -304,7 +304,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class End:
-    """World to all: the mission is over (key end). last_tick: the last one that was begun.
+    """World to all: the mission is over (key end). last_tick: the last one that is recorded.
 
     wall_s: wall-clock time of the ticks; it is for people and stays out of the log.
     """

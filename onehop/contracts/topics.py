@@ -12,13 +12,18 @@ def robot_name(robot: int) -> str:
     return ROBOT_NAME.format(robot)
 
 
+def percept(robot: int | str) -> str:
+    """World to robot: its observation and its inbox of tick k."""
+    return f"percept/{robot}"
+
+
 def obs(robot: int | str) -> str:
-    """World to robot: its observation of tick k."""
+    """Log channel of a robot's observation of tick k; on the bus it travels in its percept."""
     return f"obs/{robot}"
 
 
 def rx(robot: int | str) -> str:
-    """Radio to robot: its inbox of tick k."""
+    """Log channel of a robot's inbox of tick k; on the bus it travels in air and in its percept."""
     return f"rx/{robot}"
 
 
@@ -35,8 +40,11 @@ def fate(robot: int | str) -> str:
 TRUTH = "truth"
 """World to radio: ground truth of tick k, and what was offered to the air."""
 
+AIR = "air"
+"""Radio to world: the inboxes of tick k of every present robot, and the record of the tick."""
+
 ETHER = "ether"
-"""Log channel of the radio's verdicts; on the bus they travel in the radio's record."""
+"""Log channel of the radio's verdicts; on the bus they travel in air."""
 
 END = "end"
 """World to all: the mission is over, and how."""
@@ -64,10 +72,8 @@ def config(name: str) -> str:
     return f"config/{name}"
 
 
-def record(name: str) -> str:
-    """World or radio to recorder: one tick's wire messages, in canonical order."""
-    return f"record/{name}"
-
+RECORD = "record"
+"""World to recorder: all wire messages of one tick."""
 
 RECORDED = "recorded"
 """Recorder to world: the last tick that is in the file."""

@@ -2,9 +2,6 @@
 
 from collections.abc import Callable
 
-from radio_proxy.core.radio import Radio
-from robot_agent.core.robot import Robot
-
 from onehop.contracts import topics
 from onehop.contracts.messages import Action, Outcome, percept
 from onehop.contracts.scenario import robot_briefing
@@ -12,6 +9,8 @@ from onehop.drive.briefings import radio_briefing
 from onehop.drive.codec import encode
 from onehop.drive.journal import Journal, WireMessage
 from onehop.scenario_file import Bundle
+from radio_proxy.core.radio import Radio
+from robot_agent.core.robot import Robot
 from world_server.core.mapfile import load_map
 from world_server.core.world import World
 
@@ -40,13 +39,12 @@ def run(bundle: Bundle, journal: Journal | None, watch: Watcher | None = None) -
             actions[presence.robot] = robots[me].step(percept(observation, inbox))
         world.advance(actions)
         if journal is not None:
-            ether: list[WireMessage] = [(topics.ETHER, encode(carried.ether))]
-            ether += [(topics.rx(i), encode(inbox)) for i, inbox in carried.inboxes.items()]
-            journal.add(truth.tick, ether)
-            ground: list[WireMessage] = [(topics.TRUTH, encode(truth))]
-            ground += [(topics.obs(i), encode(seen)) for i, seen in observations.items()]
-            ground += [(topics.out(i), encode(action)) for i, action in actions.items()]
-            journal.add(truth.tick, ground)
+            record: list[WireMessage] = [(topics.TRUTH, encode(truth))]
+            record.append((topics.ETHER, encode(carried.ether)))
+            record += [(topics.rx(i), encode(inbox)) for i, inbox in carried.inboxes.items()]
+            record += [(topics.obs(i), encode(seen)) for i, seen in observations.items()]
+            record += [(topics.out(i), encode(action)) for i, action in actions.items()]
+            journal.add(truth.tick, record)
         if watch is not None:
             watch(world, actions)
         outcome = world.outcome()

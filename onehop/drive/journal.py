@@ -1,8 +1,8 @@
 """One order for everything that is recorded, and the digest over it.
 
-A tick's wire messages come from two sides, the world (truth, obs, out) and the radio (ether, rx), in an
-arrival order that differs from run to run. The journal joins them into the canonical order: by tick,
-then truth, ether, rx by robot, obs by robot, out by robot. Log and digest are made from that alone.
+Messages of a tick arrive in an order that differs from run to run. The journal puts them into the
+canonical order: by tick, then truth, ether, rx by robot, obs by robot, out by robot. Log and digest are
+made from that alone.
 """
 
 import hashlib
@@ -42,32 +42,27 @@ class Digest:
 
 
 class Journal:
-    """Joins the two halves of each tick and hands every complete tick on, in order.
+    """Puts the messages of each tick into order, digests them and hands them on.
 
-    write(tick, messages): called once per complete tick with its messages in canonical order.
+    write(tick, messages): called once per tick with its messages in canonical order.
     """
 
     def __init__(self, write: Callable[[int, list[WireMessage]], None]) -> None:
         self._write = write
-        self._halves: dict[int, list[WireMessage]] = {}
         self._digest = Digest()
-        self.complete = -1
+        self.last_tick = -1
 
     def add(self, tick: int, messages: list[WireMessage]) -> None:
-        """One side's messages of a tick; the second call for a tick completes it."""
-        if tick not in self._halves:
-            self._halves[tick] = messages
-            return
-        joined = self._halves.pop(tick) + messages
-        joined.sort(key=lambda message: canonical_rank(message[0]))
-        self._digest.add(tick, joined)
-        self._write(tick, joined)
-        self.complete = tick
+        """All messages of a tick, in any order; ticks come in theirs."""
+        ordered = sorted(messages, key=_rank)
+        self._digest.add(tick, ordered)
+        self._write(tick, ordered)
+        self.last_tick = tick
 
     def digest(self) -> str:
-        """SHA-256 over every complete tick, hexadecimal."""
+        """SHA-256 over every tick so far, hexadecimal."""
         return self._digest.hex()
 
-    def rest(self) -> list[tuple[int, list[WireMessage]]]:
-        """Halves whose other side never came, by tick: the end of a mission that was cut short."""
-        return sorted(self._halves.items())
+
+def _rank(message: WireMessage) -> tuple[int, int]:
+    return canonical_rank(message[0])

@@ -1,4 +1,4 @@
-"""How world and radio hand a tick's wire messages to the recorder: one batched message per tick."""
+"""Several wire messages of one tick as one: inboxes on the air, a percept, a tick for the recorder."""
 
 import msgpack
 

@@ -23,17 +23,17 @@ class House:
         words = make_credentials(NAMES)
         self.endpoint = free_endpoint()
         self.world = stack.enter_context(open_router("m", self.endpoint, words))
-        for key in ("out/*", "recorded", "control"):
+        for key in ("out/*", "air", "recorded", "control"):
             self.world.subscribe(key)
         self.clients = {
             name: stack.enter_context(open_client("m", self.endpoint, name, words[name]))
             for name in NAMES
         }
         for name, keys in {
-            "robot-1": ("obs/1", "rx/1"),
-            "robot-2": ("obs/2", "rx/2", "obs/1", "rx/1", "out/1", "truth"),
+            "robot-1": ("percept/1",),
+            "robot-2": ("percept/2", "percept/1", "out/1", "truth", "air"),
             "radio": ("truth", "out/1"),
-            "recorder": ("record/*", "truth"),
+            "recorder": ("record", "truth"),
         }.items():
             for key in keys:
                 self.clients[name].subscribe(key)
@@ -55,21 +55,26 @@ def _heard(bus: Bus) -> list[tuple[str, bytes]]:
 
 def test_everyone_is_heard_where_the_table_lets_them_speak(house: House) -> None:
     house.clients["robot-1"].publisher("out/1")(b"action")
-    house.clients["radio"].publisher("rx/1")(b"inbox")
-    house.clients["radio"].publisher("record/radio")(b"record")
+    house.clients["radio"].publisher("air")(b"inboxes")
     house.clients["recorder"].publisher("recorded")(b"tick")
     house.clients["operator"].publisher("control")(b"stop")
-    house.world.publisher("obs/1")(b"scan")
+    house.world.publisher("percept/1")(b"scan")
     house.world.publisher("truth")(b"poses")
-    assert _heard(house.world) == [("control", b"stop"), ("out/1", b"action"), ("recorded", b"tick")]
-    assert _heard(house.clients["robot-1"]) == [("obs/1", b"scan"), ("rx/1", b"inbox")]
+    house.world.publisher("record")(b"messages")
+    assert _heard(house.world) == [
+        ("air", b"inboxes"),
+        ("control", b"stop"),
+        ("out/1", b"action"),
+        ("recorded", b"tick"),
+    ]
+    assert _heard(house.clients["robot-1"]) == [("percept/1", b"scan")]
     assert _heard(house.clients["radio"]) == [("truth", b"poses")]
-    assert _heard(house.clients["recorder"]) == [("record/radio", b"record")]
+    assert _heard(house.clients["recorder"]) == [("record", b"messages")]
 
 
 def test_a_robot_cannot_speak_for_another_or_around_the_radio(house: House) -> None:
     robot = house.clients["robot-2"]
-    for key in ("out/1", "rx/1", "obs/1", "truth", "control", "end", "recorded"):
+    for key in ("out/1", "percept/1", "air", "truth", "control", "end", "recorded"):
         robot.publisher(key)(b"forged")
     assert _heard(house.world) == []
     assert _heard(house.clients["robot-1"]) == []
@@ -77,9 +82,9 @@ def test_a_robot_cannot_speak_for_another_or_around_the_radio(house: House) -> N
 
 
 def test_a_robot_hears_nothing_that_is_not_for_it(house: House) -> None:
-    house.world.publisher("obs/1")(b"scan")
+    house.world.publisher("percept/1")(b"scan")
     house.world.publisher("truth")(b"poses")
-    house.clients["radio"].publisher("rx/1")(b"inbox")
+    house.clients["radio"].publisher("air")(b"inboxes")
     house.clients["robot-1"].publisher("out/1")(b"action")
     assert _heard(house.clients["robot-2"]) == []
 
