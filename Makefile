@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: setup demo test check fast slow live bench compose-demo clean
+.PHONY: setup demo test check fast slow live campaign bench compose-demo clean
 
 setup: $(STAMP)
 
@@ -28,10 +28,13 @@ fast: setup
 	$(BIN)/pytest -q -m 'not slow and not live'
 
 slow: setup
-	$(BIN)/pytest -q -m 'slow and not live'
+	$(BIN)/pytest -q -m 'slow and not live and not campaign'
 
 live: setup
 	$(BIN)/pytest -q -m live
+
+campaign: setup  ## what takes minutes and stays out of CI
+	$(BIN)/pytest -q -m campaign
 
 bench: setup
 	for program in bench/*.py; do $(BIN)/python $$program || exit 1; done

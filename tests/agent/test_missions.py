@@ -156,7 +156,9 @@ def test_leaders_die_on_a_study_map_and_the_last_two_arrive(number):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("size", "spacing"), [(24, 1.0), (50, 0.8)])
+@pytest.mark.parametrize(
+    ("size", "spacing"), [(24, 1.0), pytest.param(50, 0.8, marks=pytest.mark.campaign)]
+)
 def test_large_teams_arrive(open_field, size, spacing):
     settings = (f"team.size={size}", f"team.spacing={spacing}", "team.narrow_spacing=0.6")
     outcome, _ = mission(open_field, *settings)
