@@ -22,8 +22,9 @@ from robot_agent.core.mates import Lookout
 from robot_agent.core.messages import Phase
 from robot_agent.core.modes import Event
 from robot_agent.core.planning import Guidance, Pathfinder, Progress
-from robot_agent.core.protocol import NANOSECONDS, Protocol
+from robot_agent.core.protocol import Protocol
 from robot_agent.core.scan import Fan
+from robot_agent.core.standing import NANOSECONDS
 from robot_agent.core.steering import LOOKAHEAD, Steering
 from robot_agent.core.tracking import turn_towards
 

@@ -28,6 +28,7 @@ class Leadership:
         self.since_ns = now_ns
         self.opened_ns = now_ns
         self.due_ns = now_ns
+        self.urgent = False
         self.reports: dict[int, Ack] = {}
         self._answered: dict[int, bool] = {}
         self._misses: dict[int, int] = {}
@@ -63,11 +64,18 @@ class Leadership:
         return tuple(i for i in self.followers if self._misses[i] >= lost_after)
 
     def open_period(self, now_ns: int, period_ns: int) -> None:
-        """The next commands go out now."""
-        self.sequence += 1
-        self.opened_ns = now_ns
+        """Answers are counted anew from here."""
         self.due_ns = now_ns + period_ns
         self._answered = dict.fromkeys(self._answered, False)
+
+    def next_command(self, now_ns: int) -> None:
+        """Commands go out now, at their time or because something urgent changed in between.
+
+        Only whole periods count for missing answers: nobody can have answered what was just said.
+        """
+        self.sequence += 1
+        self.opened_ns = now_ns
+        self.urgent = False
 
     def not_in_position(self) -> tuple[int, ...]:
         """Followers that have not reported to be in their slot of the roster in force."""

@@ -15,14 +15,14 @@ from collections.abc import Iterable, Sequence
 
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
-from onehop.contracts.messages import BROADCAST, Note, NoteValue, Reception, Transmission
+from onehop.contracts.messages import BROADCAST, Reception
 from onehop.contracts.scenario import Briefing
 from onehop.contracts.team import Mode
-from robot_agent.core.leading import Acquaintances, Leadership
-from robot_agent.core.link import Link
-from robot_agent.core.messages import Ack, Beacon, Command, Join, Order, Phase, decode, encode
-from robot_agent.core.modes import RESTART, START, Event, next_mode
+from robot_agent.core.leading import Leadership
+from robot_agent.core.messages import Ack, Beacon, Command, Join, Order, Phase, decode
+from robot_agent.core.modes import Event
 from robot_agent.core.roster import Roster
+from robot_agent.core.standing import NANOSECONDS, Standing
 
 ACK_MSDU_BYTES = 60
 BEACON_MSDU_BYTES = 100
@@ -35,80 +35,16 @@ for many seconds, and a restarted robot would take it for news."""
 HANDOVER_PATIENCE = 2
 """Periods for which a hand-over is repeated before the new leader is given up."""
 
-NANOSECONDS = 1_000_000_000
 FOREVER_NS = 2**62
 
 
-class Protocol:
+class Protocol(Standing):
     """One robot's side of the team protocol. `receive`, then `speak`, once a tick."""
 
     def __init__(self, briefing: Briefing, now_ns: int) -> None:
-        team = briefing.team
-        self.robot = briefing.robot
-        self.team = team
-        self.open = team.profile == "team"
-        self._known = frozenset(team.robots)
-        self._period_ns = round(team.next_period * NANOSECONDS)
-        self._leader_patience_ns = round(team.leader_timeout * NANOSECONDS)
-        self._successor_patience_ns = round(team.successor_timeout * NANOSECONDS)
-        self.mode: Mode = START if briefing.incarnation == 0 else RESTART
-        self.roster: Roster | None = Roster(0, team.robots) if self.mode is START else None
-        self.epoch = 0
-        self.phase = Phase.SETUP if self.mode is START else Phase.DRIVING
-        self.narrow = False
-        self.link = Link(now_ns)
-        self.host = 0
-        self.waiting = False
-        self.leadership: Leadership | None = None
-        self.counters = {"garbled": 0, "stale": 0, "foreign": 0}
-        self._patience_ns = self._leader_patience_ns
-        self._acquaintances = Acquaintances()
-        self._handover: tuple[Command, int] | None = None
-        self._asked_ns = -self._period_ns
-        self._outbox: list[Transmission] = []
-        self._notes: list[Note] = []
+        super().__init__(briefing, now_ns)
         if self.roster is not None and self.roster.leader == self.robot:
             self._lead(now_ns)
-
-    # what the rest of the robot asks
-
-    @property
-    def leading(self) -> bool:
-        """Whether this robot acts as leader."""
-        return self.leadership is not None
-
-    @property
-    def leader(self) -> int:
-        """Whom this robot obeys, itself if it leads; 0 for nobody."""
-        if self.mode is Mode.JOINING:
-            return self.host
-        return self.roster.leader if self.roster is not None else 0
-
-    @property
-    def members(self) -> tuple[int, ...]:
-        """The roster in force, or this robot alone while it has none."""
-        return self.roster.members if self.roster is not None else (self.robot,)
-
-    def fire(self, event: Event) -> None:
-        """Go to the mode that the table gives."""
-        after = next_mode(self.mode, event)
-        if after is not self.mode:
-            self.note("mode", mode=after.value, was=self.mode.value, on=event.value)
-            self.mode = after
-
-    def note(self, kind: str, **data: NoteValue) -> None:
-        """Tell people something."""
-        self._notes.append(Note(kind, dict(sorted(data.items()))))
-
-    def take_outbox(self) -> tuple[Transmission, ...]:
-        """What is to be sent, once."""
-        outbox, self._outbox = tuple(self._outbox), []
-        return outbox
-
-    def take_notes(self) -> tuple[Note, ...]:
-        """What is to be told, once."""
-        notes, self._notes = tuple(self._notes), []
-        return notes
 
     # hearing
 
@@ -153,7 +89,7 @@ class Protocol:
             duration = max(1, reception.arrival_ns - reception.service_start_ns)
             link.throughput_bps = 8.0 * reception.msdu_bytes * NANOSECONDS / duration
             ack = Ack(self.epoch, command.sequence, in_position, pose)
-            self._send(source, ack, ACK_MSDU_BYTES)
+            self.send(source, ack, ACK_MSDU_BYTES)
         else:
             self._on_lesser_leader(now_ns, pose, source, roster)
 
@@ -243,11 +179,7 @@ class Protocol:
         elif join.epoch > leadership.roster.epoch:
             self._change_roster(now_ns, leadership.roster.merged(join.epoch, ()), ())
         elif now_ns - leadership.opened_ns >= self._successor_patience_ns // 2:
-            leadership.due_ns = now_ns
-
-    def _missed_next(self, now_ns: int) -> bool:
-        """Whether the leader was silent for more than a period and a quarter."""
-        return now_ns - self.link.heard_ns > self._period_ns * 5 // 4
+            leadership.urgent = True
 
     def _meet(self, now_ns: int, source: int, epoch: int, members: tuple[int, ...]) -> None:
         """A leader met a stranger: take it and those it speaks for in, once it is known well enough."""
@@ -259,11 +191,6 @@ class Protocol:
             self._change_roster(now_ns, merged, ())
 
     # obeying and electing
-
-    def _adopt(self, roster: Roster) -> None:
-        self.epoch = max(self.epoch, roster.epoch)
-        self.roster = roster if roster.epoch == self.epoch else Roster(self.epoch, roster.members)
-        self._handover = None
 
     def _obey(self, now_ns: int, roster: Roster, phase: Phase, narrow: bool, pose: Pose) -> None:
         """Follow the leader of this roster, whose voice was just heard."""
@@ -278,20 +205,6 @@ class Protocol:
         link = self.link
         link.heard_ns, link.pose, link.phase, link.narrow = now_ns, pose, phase, narrow
         self._told(phase, narrow)
-
-    def _told(self, phase: Phase, narrow: bool) -> None:
-        self.phase, self.narrow = phase, narrow
-        if phase is Phase.SETUP:
-            self.fire(Event.TOLD_SETUP)
-        elif phase is Phase.DRIVING or self.mode is not Mode.STOPPED:
-            self.fire(Event.TOLD_NARROW if narrow else Event.TOLD_NEXT)
-
-    def _wait_for_leader(self, now_ns: int, patience_ns: int) -> None:
-        self.leadership = None
-        self.waiting = True
-        self.link.heard_ns = now_ns
-        self.link.trail = ()
-        self._patience_ns = patience_ns
 
     def _lead(self, now_ns: int) -> None:
         """Become the leader of the roster in force."""
@@ -311,7 +224,7 @@ class Protocol:
         self.note("roster", epoch=self.epoch, members=roster.members, lost=lost)
         if roster.leader == self.robot:
             self.leadership.adopt(roster)
-            self.leadership.due_ns = now_ns
+            self.leadership.urgent = True
             if self.mode in (Mode.LEADING, Mode.ALONE):
                 self.fire(Event.ELECTED if len(roster.members) > 1 else Event.LEFT_ALONE)
             return
@@ -325,9 +238,12 @@ class Protocol:
     def speak(self, now_ns: int, pose: Pose, trail: Sequence[tuple[float, float]]) -> None:
         """Everything that is due at this tick: commands, hand-overs, giving up, asking."""
         if self.leadership is not None:
-            if now_ns >= self.leadership.due_ns:
+            if now_ns >= self.leadership.due_ns or self.leadership.urgent:
                 self.link.pose = pose
+            if now_ns >= self.leadership.due_ns:
                 self._lead_period(now_ns, pose, trail)
+            elif self.leadership.urgent:
+                self._speak_to_followers(now_ns, pose, trail, ())
         elif now_ns - self.link.heard_ns >= self._patience_ns:
             self._on_silence(now_ns, pose)
             if self.leadership is not None:
@@ -335,9 +251,8 @@ class Protocol:
         if self._handover is not None and now_ns >= self._handover[1]:
             command, _ = self._handover
             self._handover = (command, now_ns + self._period_ns) if self.open else None
-            for robot in command.roster.members:
-                if robot != self.robot:
-                    self._send(robot, command, self.team.next_msdu_bytes)
+            others = [i for i in command.roster.members if i != self.robot]
+            self.send_to(others, command, self.team.next_msdu_bytes)
 
     def _lead_period(self, now_ns: int, pose: Pose, trail: Sequence[tuple[float, float]]) -> None:
         leadership = self.leadership
@@ -352,16 +267,21 @@ class Protocol:
         if self.leadership is None:
             return
         leadership.open_period(now_ns, self._period_ns)
+        self._speak_to_followers(now_ns, pose, trail, lost)
+
+    def _speak_to_followers(
+        self, now_ns: int, pose: Pose, trail: Sequence[tuple[float, float]], lost: tuple[int, ...]
+    ) -> None:
+        """The command to each follower, and the beacon to everyone in range."""
+        leadership = self.leadership
+        assert leadership is not None
+        leadership.next_command(now_ns)
         order = Order.LOST_FOLLOWER if lost else Order.NARROW if self.narrow else Order.NEXT
         command = self._command(order, pose, lost, tuple(trail) if self.open else ())
-        payload = encode(command)
-        for robot in leadership.followers:
-            self._outbox.append(
-                Transmission(robot, payload, max(self.team.next_msdu_bytes, len(payload)))
-            )
+        self.send_to(leadership.followers, command, self.team.next_msdu_bytes)
         if self.open:
             assert self.roster is not None
-            self._send(BROADCAST, Beacon(self.roster, self.phase, self.narrow, pose), BEACON_MSDU_BYTES)
+            self.send(BROADCAST, Beacon(self.roster, self.phase, self.narrow, pose), BEACON_MSDU_BYTES)
 
     def _end_setup(self, now_ns: int, leadership: Leadership, lost: tuple[int, ...]) -> tuple[int, ...]:
         """Drive off when everyone is in position; after the setup timeout those who are not are lost.
@@ -412,7 +332,7 @@ class Protocol:
             patience = self._successor_patience_ns if self.open else self._leader_patience_ns
             self._wait_for_leader(now_ns, patience)
             if self.open:
-                self._send(BROADCAST, Join(self.epoch, pose), ACK_MSDU_BYTES)
+                self.send(BROADCAST, Join(self.epoch, pose), ACK_MSDU_BYTES)
 
     def _go_alone(self, now_ns: int) -> None:
         """Nobody is left to hear (thesis 3.8.1: stop, or plan to the goal alone)."""
@@ -426,8 +346,4 @@ class Protocol:
     def _ask(self, now_ns: int, pose: Pose, leader: int) -> None:
         if now_ns - self._asked_ns >= self._period_ns // 2:
             self._asked_ns = now_ns
-            self._send(leader, Join(self.epoch, pose), ACK_MSDU_BYTES)
-
-    def _send(self, robot: int, message: Command | Ack | Beacon | Join, msdu_bytes: int) -> None:
-        payload = encode(message)
-        self._outbox.append(Transmission(robot, payload, max(msdu_bytes, len(payload))))
+            self.send(leader, Join(self.epoch, pose), ACK_MSDU_BYTES)

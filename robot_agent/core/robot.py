@@ -18,9 +18,10 @@ from robot_agent.core.leader import Leader, PathfinderMaker
 from robot_agent.core.messages import Phase
 from robot_agent.core.modes import Event
 from robot_agent.core.planning import make_pathfinder
-from robot_agent.core.protocol import NANOSECONDS, Protocol
+from robot_agent.core.protocol import Protocol
 from robot_agent.core.safety import SafetyFilter
 from robot_agent.core.scan import Fan
+from robot_agent.core.standing import NANOSECONDS
 from robot_agent.core.tracking import sampled
 from robot_agent.core.trail import behind
 
