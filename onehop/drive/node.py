@@ -23,7 +23,7 @@ BRIEFING_TIMEOUT_S = 30.0
 
 
 SWITCH_S = 0.0001
-"""How long the bus waits for the interpreter while a core computes; its default of 5 ms is whole ticks."""
+"""How long the bus waits for the interpreter while a core computes; by default 5 ms, whole ticks."""
 
 
 def arguments(program: str, purpose: str) -> argparse.ArgumentParser:
