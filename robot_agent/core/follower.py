@@ -14,6 +14,7 @@ Differs: a slot behind the robot is turned to on the spot first, not driven to b
 import math
 from collections.abc import Sequence
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import GainsSection, RobotSection
@@ -175,7 +176,8 @@ class Follower:
         if self.border and self._side == 0:
             self._side = 1 if direction >= bearing else -1
         speed = min(k_rho * pace, self._body.max_speed, max(0.0, free) / REACTION)
-        if speed * math.cos(direction) ** 2 < 0.05:
+        facing = elementary.cos(direction)
+        if speed * facing * facing < 0.05:
             self._stuck()
         else:
             self._idle = max(0, self._idle - 2)
@@ -184,8 +186,8 @@ class Follower:
 
     def _steer(self, direction: float, speed: float) -> Twist:
         """Drive in a direction, slowly while it is still turned to."""
-        facing = max(0.0, math.cos(direction)) ** 2
-        return Twist(speed * facing, turn_towards(direction, self._gains, self._body).w)
+        facing = max(0.0, elementary.cos(direction))
+        return Twist(speed * facing * facing, turn_towards(direction, self._gains, self._body).w)
 
     def _stuck(self) -> None:
         self._idle += 1

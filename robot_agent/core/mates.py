@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, to_map
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import RobotSection
@@ -33,7 +34,7 @@ class Lookout:
     ) -> frozenset[int]:
         """Beams that hit a robot within `reach` of one of the places [m], map frame."""
         sight = self._range + reach
-        c, s = math.cos(pose.heading), math.sin(pose.heading)
+        c, s = elementary.cos(pose.heading), elementary.sin(pose.heading)
         places = [
             (x, y)
             for x, y in places
@@ -51,11 +52,11 @@ class Lookout:
             if distance > self._range:
                 continue
             spread = float(self._angles[end - 1] - self._angles[first])
-            if 2.0 * distance * math.sin(min(spread, math.pi) / 2.0) > self._width:
+            if 2.0 * distance * elementary.sin(min(spread, math.pi) / 2.0) > self._width:
                 continue
             middle = 0.5 * float(self._angles[end - 1] + self._angles[first])
             centre = distance + self._radius
-            x, y = to_map(pose, centre * math.cos(middle), centre * math.sin(middle))
+            x, y = to_map(pose, centre * elementary.cos(middle), centre * elementary.sin(middle))
             if any(math.hypot(x - px, y - py) <= reach for px, py in places):
                 found.extend(range(first, end))
         return frozenset(found)

@@ -7,6 +7,7 @@ inside its walls. Here they lie on the leader's own way, which is known to be fr
 import math
 from collections.abc import Sequence
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, to_map
 
 
@@ -22,7 +23,7 @@ def behind(leader: Pose, trail: Sequence[tuple[float, float]], distance: float) 
         step = math.hypot(x - px, y - py)
         if step < 1e-6:
             continue
-        heading = math.atan2(y - py, x - px)
+        heading = elementary.atan2(y - py, x - px)
         if step >= left:
             share = left / step
             return Pose(x + share * (px - x), y + share * (py - y), heading)

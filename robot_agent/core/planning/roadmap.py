@@ -10,6 +10,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts import elementary
 from robot_agent.core.planning.view import BoolArray, View, squared_distances
 from robot_agent.core.scan import FloatArray
 
@@ -41,7 +42,7 @@ def sample_fan(view: View, draws: FloatArray, centre: float, half: float, margin
     reach = np.minimum(view.sight[beam], view.fan.range - margin)
     radius = reach * np.sqrt(draws[:, 1]) * 0.98
     heading = bearing + view.pose.heading
-    directions = np.column_stack((np.cos(heading), np.sin(heading)))
+    directions = np.column_stack((elementary.cosines(heading), elementary.sines(heading)))
     return np.asarray(view.origin + directions * radius[:, None])
 
 
@@ -94,7 +95,7 @@ class RoadMap:
         inner = np.flatnonzero(a > 0)
         for share in EDGE_PROBES:
             clear[inner] &= self.view.visible(start[inner] + share * (end[inner] - start[inner]))
-        wide = self.room[a] + self.room[b] - 2.0 * self.comfort >= np.hypot(*(end - start).T)
+        wide = self.room[a] + self.room[b] - 2.0 * self.comfort >= elementary.lengths(*(end - start).T)
         rest = np.flatnonzero(clear & ~wide)
         clear[rest], wide[rest] = self.view.passable_twice(
             start[rest], end[rest], self.clearance, self.comfort
@@ -141,7 +142,7 @@ class RoadMap:
     def chain(self, goal: int) -> list[int] | None:
         """The points of the shortest way to point `goal` by A*, the robot first; None if none."""
         points = self.points
-        guess = np.hypot(*(points - points[goal]).T).tolist()
+        guess = elementary.lengths(*(points - points[goal]).T).tolist()
         cost, origin = {0: 0.0}, {0: 0}
         heap = [(guess[0], 0)]
         while heap:

@@ -10,7 +10,8 @@ import math
 import numpy as np
 import numpy.typing as npt
 
-from onehop.contracts.geometry import Pose
+from onehop.contracts import elementary
+from onehop.contracts.geometry import TAU, Pose
 from onehop.contracts.messages import Ranges
 from robot_agent.core.scan import Fan, FloatArray
 
@@ -51,7 +52,7 @@ class View:
         if moving:
             solid[sorted(moving)] = False
         self.solid: BoolArray = solid
-        c, s = math.cos(pose.heading), math.sin(pose.heading)
+        c, s = elementary.cos(pose.heading), elementary.sin(pose.heading)
         d = fan.directions
         self.directions: FloatArray = np.column_stack(
             (c * d[:, 0] - s * d[:, 1], s * d[:, 0] + c * d[:, 1])
@@ -60,10 +61,10 @@ class View:
         self.obstacles: FloatArray = np.concatenate((_outline(hits, grain), beside))
 
     def polar(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Bearing [rad, relative to the heading, in (-pi, pi]] and distance [m] of (n, 2) points."""
+        """Bearing [rad, relative to the heading, in [-pi, pi]] and distance [m] of (n, 2) points."""
         dx, dy = points[:, 0] - self.pose.x, points[:, 1] - self.pose.y
-        bearing = np.arctan2(dy, dx) - self.pose.heading
-        return np.arctan2(np.sin(bearing), np.cos(bearing)), np.hypot(dx, dy)
+        bearing = elementary.directions(dy, dx) - self.pose.heading
+        return bearing - TAU * np.rint(bearing / TAU), elementary.lengths(dx, dy)
 
     def visible(self, points: FloatArray) -> BoolArray:
         """Which (n, 2) points lie in front of what both neighbouring beams hit."""
@@ -83,7 +84,7 @@ class View:
         """
         bearing, distance = self.polar(points)
         inside = np.clip(self.fan.angles[-1] - np.abs(bearing), 0.0, math.pi / 2)
-        return np.asarray((distance * np.sin(inside) >= margin) | (distance < 4.0 * margin))
+        return np.asarray((distance * elementary.sines(inside) >= margin) | (distance < 4.0 * margin))
 
     def allowance(self, clearance: float) -> Float32Array:
         """Least distance to keep from each obstacle, squared, (n,) [m2].
@@ -92,7 +93,7 @@ class View:
         obstacle may move out of it, not further in.
         """
         have = squared_distances(self.origin[None], self.obstacles)[0]
-        return np.asarray(np.minimum(clearance**2, np.maximum(np.sqrt(have) - 0.01, 0.0) ** 2))
+        return np.asarray(np.minimum(clearance * clearance, np.maximum(np.sqrt(have) - 0.01, 0.0) ** 2))
 
     def free(self, points: FloatArray, clearance: float) -> tuple[BoolArray, FloatArray]:
         """Which (n, 2) points keep `clearance` (or the allowance), and the room of each, (n,) [m]."""
@@ -126,15 +127,15 @@ class Afterimage:
     def beside(self, pose: Pose, half_view: float) -> FloatArray:
         """The remembered points that the laser cannot see from `pose`, (n, 2) [m]."""
         dx, dy = self.points[:, 0] - pose.x, self.points[:, 1] - pose.y
-        bearing = np.arctan2(dy, dx) - pose.heading
-        hidden = np.cos(bearing) < math.cos(half_view - 0.02)
-        return self.points[hidden & (dx * dx + dy * dy < self.reach**2)]
+        bearing = elementary.directions(dy, dx) - pose.heading
+        hidden = elementary.cosines(bearing) < elementary.cos(half_view - 0.02)
+        return self.points[hidden & (dx * dx + dy * dy < self.reach * self.reach)]
 
     def keep(self, view: View) -> None:
         """Remember the obstacles of this view that are within reach, the nearest first."""
         points = view.obstacles
         distance2 = squared_distances(view.origin[None], points)[0]
-        near = np.flatnonzero(distance2 < (1.5 * self.reach) ** 2)
+        near = np.flatnonzero(distance2 < 2.25 * self.reach * self.reach)
         order = near[np.argsort(distance2[near], kind="stable")]
         self.points = points[order[: self.capacity]]
 
@@ -145,7 +146,7 @@ def _outline(hits: FloatArray, grain: float) -> FloatArray:
     """
     if len(hits) < 3:
         return hits
-    step = np.hypot(*np.diff(hits, axis=0).T)
+    step = elementary.lengths(*np.diff(hits, axis=0).T)
     cell = np.floor(np.cumsum(np.minimum(step, grain)) / grain)
     keep = np.concatenate(([True], np.diff(cell, prepend=0.0) > 0))
     keep[-1] = True
@@ -162,11 +163,11 @@ def _same_wall(hits: FloatArray, step: FloatArray) -> BoolArray:
     """Which gaps between consecutive hits lie in line with the hits around them and are no wider than
     theirs: a wall that the beams graze, not a way through it.
     """
-    direction = np.arctan2(*np.diff(hits, axis=0).T[::-1])
+    direction = elementary.directions(*np.diff(hits, axis=0).T[::-1])
     straight = np.zeros(len(step), dtype=np.bool_)
     for side in (-1, 1):
         other, gap = np.roll(direction, side), np.roll(step, side)
-        straight |= (np.cos(direction - other) > 0.99) & (step < 1.6 * gap)
+        straight |= (elementary.cosines(direction - other) > 0.99) & (step < 1.6 * gap)
     return straight
 
 
