@@ -83,7 +83,7 @@ class WallMap:
         ring = 0.0
         while ring <= farthest:
             count = min(_RING_POINTS, max(1, math.ceil(math.tau * ring / _RING_STEP)))
-            angles = np.arange(count) * (math.tau / count)
+            angles = np.arange(count, dtype=np.float64) * (math.tau / count)
             offsets = ring * np.column_stack((elementary.cosines(angles), elementary.sines(angles)))
             points = np.round(np.array([x, y]) + offsets, 2)
             fits = np.flatnonzero(self.free(points, radius))
