@@ -15,6 +15,9 @@ from onehop.analysis.report.material import Material
 DPI = 110
 """Resolution of the PNG files: 10 inches are 1100 pixels."""
 
+_COMPRESSION = 3
+"""zlib level of the PNG files: 8 % larger than at level 6, and quicker to write."""
+
 _NAME_WIDTH = 0.07
 """Room that the name of a turn takes, as a share of the time axis; where it lacks, there is no name."""
 
@@ -47,7 +50,7 @@ def save(figure: Figure, folder: Path, stem: str) -> Path:
     FigureCanvasAgg(figure)
     path = folder / f"{stem}.png"
     figure.savefig(folder / f"{stem}.svg", metadata={"Date": None})
-    figure.savefig(path, dpi=DPI)
+    figure.savefig(path, dpi=DPI, pil_kwargs={"compress_level": _COMPRESSION})
     return path
 
 

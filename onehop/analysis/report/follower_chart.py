@@ -89,11 +89,15 @@ def rolling_mean(
     return np.where(known, mean, np.nan)
 
 
+def _stride(material: Material) -> int:
+    """Ticks between two steps of the figure."""
+    return max(1, round(_GRID_S / material.period_s))
+
+
 def _following(material: Material, robot: int) -> Table:
     """Status of a robot while it obeys another one, at the steps of the figure."""
     own = material.tables["status"].of(robot)
-    stride = max(1, round(_GRID_S / material.period_s))
-    own = own.where(own["tick"] % stride == 0)
+    own = own.where(own["tick"] % _stride(material) == 0)
     return own.where((own["leader"] != robot) & (own["leader"] != 0))
 
 
@@ -106,13 +110,9 @@ def _gapped(times: npt.NDArray[np.float64], values: npt.NDArray[np.float64], gap
 def leader_distance(material: Material, robot: int) -> Series:
     """To the leader that the robot obeys, from ground truth [m]."""
     own, poses = _following(material, robot), material.tables["poses"]
-    place = {
-        (tick, one): row
-        for row, (tick, one) in enumerate(
-            zip(poses["tick"].tolist(), poses["robot"].tolist(), strict=True)
-        )
-        if tick % max(1, round(_GRID_S / material.period_s)) == 0
-    }
+    poses = poses.where(poses["tick"] % _stride(material) == 0)
+    keys = zip(poses["tick"].tolist(), poses["robot"].tolist(), strict=True)
+    place = {key: row for row, key in enumerate(keys)}
     rows = [
         (time_s, place[tick, robot], place[tick, leader])
         for time_s, tick, leader in zip(
