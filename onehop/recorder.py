@@ -39,9 +39,7 @@ def main() -> int:
     options = parser.parse_args()
     node.start(options)
     with node.connect(options, topics.RECORDER) as bus:
-        bus.subscribe(topics.RECORD)
-        bus.subscribe(topics.END)
-        bus.watch(topics.alive(topics.WORLD))
+        bus.watch(topics.WORLD)
         briefing = decode(LogBriefing, node.briefing(bus, topics.RECORDER))
         options.out.mkdir(parents=True, exist_ok=True)
         return _Recorder(bus, briefing, options.out, not options.no_file).serve()
@@ -57,7 +55,7 @@ class _Recorder:
             bundle = bundle_from_json(briefing.scenario_json, dict(briefing.files), "briefing")
             self._log = LogWriter(self._path, bundle, briefing.driver)
         self._journal = Journal(self._write)
-        self._acknowledge = bus.publisher(topics.RECORDED)
+        self._acknowledge = bus.publisher(topics.by(topics.RECORDER, topics.RECORDED))
         self._end: End | None = None
 
     def _write(self, tick: int, messages: list[WireMessage]) -> None:
@@ -72,22 +70,22 @@ class _Recorder:
         """Record until the end of the mission, or of the world."""
         self._bus.announce(topics.RECORDER)
         while self._end is None:
-            key, data = self._bus.inbox.get()
-            if data is GONE:
+            what, data = self._bus.receive()
+            if data == GONE:
                 break
-            self._take(key, data)
+            self._take(what, data)
         deadline = time.monotonic() + LAST_WORDS_S
         while self._end is not None and self._journal.last_tick < self._end.last_tick:
-            received = self._bus.receive(max(0.0, deadline - time.monotonic()))
+            received = self._bus.receive_by(deadline)
             if received is None:
                 break
             self._take(*received)
         return self._finish()
 
-    def _take(self, key: str, data: bytes) -> None:
-        if key == topics.END:
+    def _take(self, what: str, data: bytes) -> None:
+        if what == topics.END:
             self._end = decode(End, data)
-        elif key == topics.RECORD:
+        elif what == topics.RECORD:
             self._journal.add(*unpack_record(data))
 
     def _finish(self) -> int:
@@ -101,7 +99,7 @@ class _Recorder:
             return 1
         text = json.dumps(summary, indent=1)
         (self._out / "summary.json").write_text(text + "\n")
-        self._bus.publisher(topics.RESULT)(text.encode())
+        self._bus.publisher(topics.to(topics.OPERATOR, topics.RESULT))(text.encode())
         return 0
 
 

@@ -19,7 +19,7 @@ from onehop.contracts.messages import Action, End, Outcome, Progress, RobotProgr
 from onehop.contracts.scenario import RadioBriefing, robot_briefing
 from onehop.drive import node
 from onehop.drive.briefings import LogBriefing, radio_briefing
-from onehop.drive.bus import ALIVE, GONE, Bus, open_router
+from onehop.drive.bus import ALIVE, Bus, open_router
 from onehop.drive.codec import decode, encode
 from onehop.drive.journal import WireMessage
 from onehop.drive.record import pack_record, unpack_record
@@ -29,6 +29,12 @@ from world_server.core.world import World
 
 RECORD_WINDOW = 5
 """Ticks that the world may be ahead of the file: what a kill -9 of the recorder can cost at most."""
+
+_AIR = f"{topics.RADIO}/{topics.AIR}"
+_RECORDED = f"{topics.RECORDER}/{topics.RECORDED}"
+_STOPS = (f"{topics.OPERATOR}/{topics.CONTROL}", f"{topics.WORLD}/{topics.CONTROL}")
+_ALIVE = f"{topics.WORLD}/{topics.alive('')}"
+"""What the bus calls the messages that the world hears."""
 
 PROGRESS_S = 0.2
 FAREWELL_S = 30.0
@@ -84,7 +90,8 @@ class _Host:
         self._world = world
         robots = self._scenario.team.robots
         self._incarnations = dict.fromkeys(robots, 0)
-        self._names = {topics.alive(topics.robot_name(i)): i for i in robots}
+        self._names = {topics.robot_name(i): i for i in robots}
+        self._outs = {f"{name}/{topics.OUT}": i for name, i in self._names.items()}
         self._alive: set[str] = set()
         self._recorded = -1
         self._last_tick = -1
@@ -101,23 +108,23 @@ class _Host:
                 LogBriefing(driver, bundle.scenario_json(), tuple(sorted(bundle.files.items())))
             ),
         }
-        self._put_truth = bus.publisher(topics.TRUTH)
-        self._put_percept = {i: bus.publisher(topics.percept(i)) for i in robots}
-        self._put_fate = {i: bus.publisher(topics.fate(i)) for i in robots}
-        self._put_record = bus.publisher(topics.RECORD, express=False)
-        self._put_progress = bus.publisher(topics.PROGRESS, express=False)
-        self._put_restart = bus.publisher(topics.RESTART)
-        self._put_end = bus.publisher(topics.END)
+        to = topics.to
+        self._put_truth = bus.publisher(to(topics.RADIO, topics.TRUTH))
+        self._put_percept = {
+            i: bus.publisher(to(name, topics.PERCEPT)) for name, i in self._names.items()
+        }
+        self._put_fate = {i: bus.publisher(to(name, topics.FATE)) for name, i in self._names.items()}
+        self._put_record = bus.publisher(to(topics.RECORDER, topics.RECORD), express=False)
+        self._put_progress = bus.publisher(to(topics.OPERATOR, topics.PROGRESS), express=False)
+        self._put_restart = bus.publisher(to(topics.OPERATOR, topics.RESTART))
+        everyone = (*self._names, topics.RADIO, topics.RECORDER, topics.OPERATOR)
+        self._put_end = [bus.publisher(to(name, topics.END)) for name in everyone]
 
     def serve(self) -> int:
         """Run the mission from the first process's arrival to the last one's farewell."""
         signal.signal(signal.SIGTERM, self._on_sigterm)
         bus = self._bus
-        bus.subscribe(topics.out("*"))
-        bus.subscribe(topics.AIR)
-        bus.subscribe(topics.RECORDED)
-        bus.subscribe(topics.CONTROL)
-        bus.watch(topics.alive("*"))
+        bus.watch("*")
         bus.answer(topics.config("*"), self._brief)
         bus.announce(topics.WORLD)
         started = time.monotonic()
@@ -129,28 +136,30 @@ class _Host:
         except _InterruptedError as interruption:
             outcome = self._world.aborted(interruption.reason)
         wall_s = time.monotonic() - started
-        self._put_end(encode(End(outcome, self._last_tick, wall_s)))
+        end = encode(End(outcome, self._last_tick, wall_s))
+        for put in self._put_end:
+            put(end)
         self._await_farewell()
         return 0
 
     def _on_sigterm(self, *_: object) -> None:
-        self._bus.inbox.put((topics.CONTROL, b"stop"))
+        self._bus.tell_self(topics.CONTROL)
 
     def _brief(self, key: str) -> bytes | None:
         """The answer to a process that asks for its briefing."""
         name = key.removeprefix(topics.config(""))
-        robot = self._names.get(topics.alive(name))
+        robot = self._names.get(name)
         if robot is None:
             return self._briefings.get(key)
         return encode(robot_briefing(self._scenario, robot, self._incarnations[robot]))
 
     def _await_everyone(self) -> None:
-        wanted = {*self._names, topics.alive(topics.RADIO), topics.alive(topics.RECORDER)}
+        wanted = {*self._names, topics.RADIO, topics.RECORDER}
         deadline = time.monotonic() + START_S
         while missing := wanted - self._alive:
             self._hear(deadline)
             if time.monotonic() > deadline:
-                names = ", ".join(sorted(key.removeprefix(topics.alive("")) for key in missing))
+                names = ", ".join(sorted(missing))
                 raise _InterruptedError(f"not started within {START_S:.0f} s: {names}")
 
     def _run(self) -> Outcome:
@@ -203,7 +212,7 @@ class _Host:
         self._actions.clear()
         self._awaited = {presence.robot for presence in truth.present}
         for i in sorted(self._awaited):
-            if topics.alive(topics.robot_name(i)) not in self._alive:
+            if topics.robot_name(i) not in self._alive:
                 self._fence(i, "its process died")
         deadline = time.monotonic() + self._scenario.clock.silence_s
         while self._awaited or truth.tick - self._recorded > RECORD_WINDOW:
@@ -218,31 +227,34 @@ class _Host:
 
     def _hear(self, deadline: float) -> None:
         """Take in one message, waiting for it until the deadline at most."""
-        received = self._bus.receive(max(0.0, deadline - time.monotonic()))
+        received = self._bus.receive_by(deadline)
         if received is None:
             return
         key, data = received
-        if key == topics.RECORDED:
-            self._recorded = int.from_bytes(data, "little")
-        elif key == topics.AIR:
+        robot = self._outs.get(key)
+        if robot is not None:
+            self._on_action(robot, data)
+        elif key == _AIR:
             self._air = data
-        elif key == topics.CONTROL:
+        elif key == _RECORDED:
+            self._recorded = int.from_bytes(data, "little")
+        elif key in _STOPS:
             self._stop = "stopped by the operator"
-        elif data is ALIVE:
-            self._alive.add(key)
-        elif data is GONE:
-            self._on_gone(key)
-        elif key.startswith(topics.out("")):
-            self._on_action(int(key.removeprefix(topics.out(""))), data)
+        elif key.startswith(_ALIVE):
+            self._on_alive(key.removeprefix(_ALIVE), data == ALIVE)
 
-    def _on_gone(self, key: str) -> None:
-        self._alive.discard(key)
-        robot = self._names.get(key)
+    def _on_alive(self, name: str, alive: bool) -> None:
+        """Take in that a process has come or gone."""
+        if alive:
+            self._alive.add(name)
+            return
+        self._alive.discard(name)
+        robot = self._names.get(name)
         if robot is not None:
             if robot != self._restarting:
                 self._fence(robot, "its process died")
-        elif key in (topics.alive(topics.RADIO), topics.alive(topics.RECORDER)):
-            self._stop = f"the {key.removeprefix(topics.alive(''))} process died"
+        elif name in (topics.RADIO, topics.RECORDER):
+            self._stop = f"the {name} process died"
 
     def _on_action(self, robot: int, data: bytes) -> None:
         if robot not in self._awaited:
@@ -278,15 +290,15 @@ class _Host:
                     self._restart(i)
 
     def _restart(self, robot: int) -> None:
-        key = topics.alive(topics.robot_name(robot))
+        name = topics.robot_name(robot)
         self._incarnations[robot] += 1
         self._put_fate[robot](b"")
         self._restarting = robot
         deadline = time.monotonic() + RESTART_S
-        while key in self._alive and time.monotonic() < deadline:
+        while name in self._alive and time.monotonic() < deadline:
             self._hear(deadline)
         self._put_restart(str(robot).encode())
-        while key not in self._alive:
+        while name not in self._alive:
             self._hear(deadline)
             if time.monotonic() > deadline:
                 raise _InterruptedError(f"robot {robot} was not started again within {RESTART_S:.0f} s")
@@ -306,6 +318,6 @@ class _Host:
     def _await_farewell(self) -> None:
         """Stay, as the router of the bus, until everyone who was told of the end has left."""
         deadline = time.monotonic() + FAREWELL_S
-        staying = {*self._names, topics.alive(topics.RADIO), topics.alive(topics.RECORDER)}
+        staying = {*self._names, topics.RADIO, topics.RECORDER}
         while self._alive & staying and time.monotonic() < deadline:
             self._hear(deadline)

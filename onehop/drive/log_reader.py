@@ -18,7 +18,7 @@ from zstandard import ZstdError
 
 from onehop.contracts import topics
 from onehop.contracts.errors import LogError
-from onehop.contracts.messages import WIRE_VERSION
+from onehop.contracts.values import WIRE_VERSION
 from onehop.drive.journal import Digest, WireMessage, canonical_rank
 from onehop.drive.log_writer import MAP_ATTACHMENT, SCENARIO_ATTACHMENT
 from onehop.scenario_file import Bundle, bundle_from_json

@@ -16,7 +16,7 @@ from mcap.writer import CompressionType, Writer
 
 from onehop import __version__
 from onehop.contracts import topics
-from onehop.contracts.messages import WIRE_VERSION
+from onehop.contracts.values import WIRE_VERSION
 from onehop.drive.journal import WireMessage
 from onehop.scenario_file import Bundle
 

@@ -22,10 +22,6 @@ CREDENTIALS_VARIABLE = "ONEHOP_CREDENTIALS"
 BRIEFING_TIMEOUT_S = 30.0
 
 
-SWITCH_S = 0.0001
-"""How long the bus waits for the interpreter while a core computes; by default 5 ms, whole ticks."""
-
-
 def arguments(program: str, purpose: str) -> argparse.ArgumentParser:
     """The options that all processes of a mission share."""
     parser = argparse.ArgumentParser(prog=f"python -m {program}", description=purpose)
@@ -41,7 +37,6 @@ def add_connect(parser: argparse.ArgumentParser) -> None:
 
 
 def start(options: argparse.Namespace) -> None:
-    sys.setswitchinterval(SWITCH_S)
     """Tie this process to its launcher, if it has one, and leave Ctrl-C to the launcher."""
     if options.lifeline is not None:
         lifeline.hold(options.lifeline)
