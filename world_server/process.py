@@ -36,6 +36,8 @@ _STOPS = (f"{topics.OPERATOR}/{topics.CONTROL}", f"{topics.WORLD}/{topics.CONTRO
 _ALIVE = f"{topics.WORLD}/{topics.alive('')}"
 """What the bus calls the messages that the world hears."""
 
+_TOLD_OF_THE_OUTCOME = (topics.RECORDER, topics.OPERATOR)
+
 PROGRESS_S = 0.2
 FAREWELL_S = 30.0
 START_S = 30.0
@@ -117,8 +119,8 @@ class _Host:
         self._put_record = bus.publisher(to(topics.RECORDER, topics.RECORD), express=False)
         self._put_progress = bus.publisher(to(topics.OPERATOR, topics.PROGRESS), express=False)
         self._put_restart = bus.publisher(to(topics.OPERATOR, topics.RESTART))
-        everyone = (*self._names, topics.RADIO, topics.RECORDER, topics.OPERATOR)
-        self._put_end = [bus.publisher(to(name, topics.END)) for name in everyone]
+        self._put_end = [bus.publisher(to(name, topics.END)) for name in _TOLD_OF_THE_OUTCOME]
+        self._dismiss = [bus.publisher(to(name, topics.END)) for name in (*self._names, topics.RADIO)]
 
     def serve(self) -> int:
         """Run the mission from the first process's arrival to the last one's farewell."""
@@ -139,6 +141,8 @@ class _Host:
         end = encode(End(outcome, self._last_tick, wall_s))
         for put in self._put_end:
             put(end)
+        for put in self._dismiss:
+            put(b"")
         self._await_farewell()
         return 0
 

@@ -9,7 +9,7 @@ ROBOT_NAME = "robot-{}"
 WORLD, RADIO, RECORDER, OPERATOR = "world", "radio", "recorder", "operator"
 
 
-def robot_name(robot: int) -> str:
+def robot_name(robot: int | str) -> str:
     """Name of a robot's process, liveliness token and identity: robot-3."""
     return ROBOT_NAME.format(robot)
 

@@ -29,6 +29,11 @@ GONE = b"gone"
 CHANNEL_MESSAGES = 100_000
 """Messages that may wait for a process. When there are more its peers wait too: nothing is dropped."""
 
+ROBOT_LINK_BYTES = 48_000
+"""Longest message to or from a robot. Its link is Zenoh's low-latency transport, which writes to the
+socket from the sender's thread (a tick costs a quarter less CPU) but knows no fragments: it would drop
+what is longer without a word."""
+
 PULSE_S = 0.1
 """How often a process that waits with a time limit looks at the clock."""
 
@@ -43,6 +48,14 @@ ONE_THREAD = (
     "net: (worker_threads: 1))"
 )
 """Zenoh's own threads in each process: one. Its default of several costs 30 % more time a tick."""
+
+_QUIET = {
+    "scouting/multicast/enabled": False,
+    "scouting/gossip/enabled": False,
+    "transport/shared_memory/enabled": False,
+    "transport/unicast/qos/enabled": False,
+}
+"""What nobody here uses. Without priorities a link is of low latency if both of its ends ask for it."""
 
 _PUT, _DELETE = "put", "delete"
 _SUBSCRIBE, _QUERY, _REPLY = "declare_subscriber", "query", "reply"
@@ -105,7 +118,7 @@ class Bus:
             express=express,
         )
         self._kept.append(publisher)
-        return publisher.put
+        return _limited(publisher.put, key) if _is_of_robot(key) else publisher.put
 
     def tell_self(self, what: str, data: bytes = b"") -> None:
         """Let this process receive a message from itself; it does not leave the process."""
@@ -173,15 +186,31 @@ class Bus:
         return None
 
 
+def _is_of_robot(key: str) -> bool:
+    return f"/{topics.robot_name('')}" in key
+
+
+def _limited(put: Callable[[bytes], None], key: str) -> Callable[[bytes], None]:
+    """put for a robot's link. Raises MissionError for a message that does not fit."""
+
+    def put_if_it_fits(data: bytes) -> None:
+        if len(data) > ROBOT_LINK_BYTES:
+            raise MissionError(
+                f"{key}: a message of {len(data)} bytes; a robot's link carries {ROBOT_LINK_BYTES}"
+            )
+        put(data)
+
+    return put_if_it_fits
+
+
 def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | None = None) -> Bus:
     """The world's session. credentials: passwords by name; without them anyone may say anything."""
     settings: dict[str, Any] = {
         "mode": "router",
         "listen/endpoints": [endpoint],
         "scouting/delay": 0,
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-        "transport/shared_memory/enabled": False,
+        **_QUIET,
+        "transport/unicast/lowlatency": True,
     }
     if credentials is None:
         return Bus(_open(settings), mission, topics.WORLD)
@@ -212,9 +241,8 @@ def open_client(
         "connect/exit_on_failure": True,
         "connect/retry": {"period_init_ms": 20, "period_max_ms": 200, "period_increase_factor": 1.5},
         "listen/endpoints": [],
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-        "transport/shared_memory/enabled": False,
+        **_QUIET,
+        "transport/unicast/lowlatency": name.startswith(topics.robot_name("")),
         "transport/link/tx/lease": LEASE_MS,
     }
     if password is not None:

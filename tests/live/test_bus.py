@@ -9,7 +9,15 @@ import zenoh
 
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
-from onehop.drive.bus import ALIVE, GONE, Bus, make_credentials, open_client, open_router
+from onehop.drive.bus import (
+    ALIVE,
+    GONE,
+    ROBOT_LINK_BYTES,
+    Bus,
+    make_credentials,
+    open_client,
+    open_router,
+)
 from onehop.mission.processes import free_endpoint
 
 pytestmark = pytest.mark.live
@@ -100,3 +108,20 @@ def test_a_process_is_briefed_for_itself_only(house: House) -> None:
 def test_a_wrong_password_gets_nobody_in(house: House) -> None:
     with pytest.raises(MissionError, match="no bus at"):
         open_client("m", house.endpoint, "robot-1", "guess", timeout_ms=1000)
+
+
+def test_what_a_robots_link_cannot_carry_is_refused(house: House) -> None:
+    put = house.clients["robot-1"].publisher("from/robot-1/out")
+    longest = bytes(ROBOT_LINK_BYTES)
+    put(longest)
+    assert _heard(house.world) == [("robot-1/out", longest)]
+    with pytest.raises(MissionError, match=r"from/robot-1/out: a message of 48001 bytes"):
+        put(bytes(ROBOT_LINK_BYTES + 1))
+
+
+def test_other_links_carry_messages_of_any_length(house: House) -> None:
+    record, air = bytes(3_000_000), bytes(500_000)
+    house.world.publisher("to/recorder/record")(record)
+    house.clients["radio"].publisher("from/radio/air")(air)
+    assert _heard(house.clients["recorder"]) == [("record", record)]
+    assert _heard(house.world) == [("radio/air", air)]
