@@ -1,7 +1,7 @@
 """The recorder process: everything on the bus into one MCAP file, as it happens.
 
-The world hands it one batch per tick. It writes ticks in canonical order, flushes them to the operating
-system and tells the world how far the file is; the world never runs more than a few ticks
+The world hands it a few ticks at a time. It writes them in canonical order, flushes them to the
+operating system and tells the world how far the file is; the world never runs more than a few ticks
 ahead. With --no-file it only makes the digest.
 """
 
@@ -18,12 +18,9 @@ from onehop.drive.bus import GONE, Bus
 from onehop.drive.codec import decode
 from onehop.drive.journal import Journal, WireMessage
 from onehop.drive.log_writer import LogWriter
-from onehop.drive.record import unpack_record
+from onehop.drive.record import unpack_records
 from onehop.mission.summary import summarize
 from onehop.scenario_file import bundle_from_json
-
-FLUSH_TICKS = 2
-"""Ticks between two flushes; what a kill -9 can take is less than that and what is in flight."""
 
 LAST_WORDS_S = 2.0
 """How long to wait for the last records after the end of the mission was announced."""
@@ -61,10 +58,6 @@ class _Recorder:
     def _write(self, tick: int, messages: list[WireMessage]) -> None:
         if self._log is not None:
             self._log.write(tick, messages)
-        if (tick + 1) % FLUSH_TICKS == 0:
-            if self._log is not None:
-                self._log.flush()
-            self._acknowledge(tick.to_bytes(8, "little"))
 
     def serve(self) -> int:
         """Record until the end of the mission, or of the world."""
@@ -86,7 +79,11 @@ class _Recorder:
         if what == topics.END:
             self._end = decode(End, data)
         elif what == topics.RECORD:
-            self._journal.add(*unpack_record(data))
+            for record in unpack_records(data):
+                self._journal.add(*record)
+            if self._log is not None:
+                self._log.flush()
+            self._acknowledge(self._journal.last_tick.to_bytes(8, "little"))
 
     def _finish(self) -> int:
         summary: dict[str, Any] | None = None

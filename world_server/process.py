@@ -22,10 +22,13 @@ from onehop.drive.briefings import LogBriefing, radio_briefing
 from onehop.drive.bus import ALIVE, Bus, open_router
 from onehop.drive.codec import decode, encode
 from onehop.drive.journal import WireMessage
-from onehop.drive.record import pack_record, unpack_record
+from onehop.drive.record import Record, pack_record, pack_records, unpack_record
 from onehop.scenario_file import Bundle
 from world_server.core.mapfile import load_map
 from world_server.core.world import World
+
+RECORD_TICKS = 3
+"""Ticks that go to the recorder at once."""
 
 RECORD_WINDOW = 5
 """Ticks that the world may be ahead of the file: what a kill -9 of the recorder can cost at most."""
@@ -97,6 +100,7 @@ class _Host:
         self._alive: set[str] = set()
         self._recorded = -1
         self._last_tick = -1
+        self._record: list[Record] = []
         self._air: bytes | None = None
         self._actions: dict[int, tuple[Action, bytes]] = {}
         self._awaited: set[int] = set()
@@ -138,6 +142,7 @@ class _Host:
         except _InterruptedError as interruption:
             outcome = self._world.aborted(interruption.reason)
         wall_s = time.monotonic() - started
+        self._hand_over_record()
         end = encode(End(outcome, self._last_tick, wall_s))
         for put in self._put_end:
             put(end)
@@ -188,14 +193,20 @@ class _Host:
             self._put_percept[presence.robot](percept)
         self._collect(truth)
         done = [(topics.out(i), self._actions[i][1]) for i in sorted(self._actions)]
-        self._put_record(pack_record(truth.tick, [(topics.TRUTH, encoded_truth), *air, *seen, *done]))
+        self._record.append((truth.tick, [(topics.TRUTH, encoded_truth), *air, *seen, *done]))
         self._last_tick = truth.tick
+        if len(self._record) == RECORD_TICKS:
+            self._hand_over_record()
         world.advance({i: self._actions[i][0] for i in sorted(self._actions)})
         for i in sorted(self._fenced):
             world.fence(i, self._fenced[i])
         self._fenced.clear()
         self._report_progress(truth)
         return world.outcome()
+
+    def _hand_over_record(self) -> None:
+        self._put_record(pack_records(self._record))
+        self._record.clear()
 
     def _await_air(self) -> list[WireMessage]:
         """Inboxes and record of this tick, from the radio."""
