@@ -25,12 +25,13 @@ class Frame:
     """One MSDU for one hop. receiver: station index or EVERYONE; packet: opaque to this layer.
 
     service_start: when it became the head of its queue [ns]. sinr_db, cause: of the last frame of its
-    exchange that was judged at a receiver.
+    exchange that was judged at a receiver. urgent: a routing packet, served before data.
     """
 
     receiver: int
     msdu_bytes: int
     packet: object
+    urgent: bool = False
     service_start: int = -1
     attempts: int = 0
     received: bool = False
@@ -40,13 +41,15 @@ class Frame:
 
 @dataclass(slots=True, eq=False)
 class Station:
-    """A network card. slots: backoff left. access: when it will speak, NEVER while frozen [ns].
+    """A network card. urgent, queue: routing packets and data that wait, each first in, first out.
 
+    slots: backoff left. access: when it will speak, NEVER while frozen [ns].
     idle_start: from when its DIFS counts [ns]. fresh: its head found the medium idle, so it has drawn
     no backoff yet. gone: its robot left; events that still name it are void.
     """
 
     index: int
+    urgent: deque[Frame] = field(default_factory=deque)
     queue: deque[Frame] = field(default_factory=deque)
     frame: Frame | None = None
     slots: int = 0

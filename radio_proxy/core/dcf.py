@@ -103,11 +103,17 @@ class Dcf:
                 event(argument, time_ns)
 
     def enqueue(self, index: int, frame: Frame, now: int, hold_back: bool) -> bool:
-        """Give a frame to a card; False when its queue is full. hold_back: draw a backoff anyway."""
+        """Give a frame to a card; False when its queue is full. hold_back: draw a backoff anyway.
+
+        Routing packets wait before data, as in the card of Das, Perkins and Royer, "Performance
+        comparison of two on-demand routing protocols for ad hoc networks", INFOCOM 2000, section IV:
+        behind data a request would still lie here when the patience with its answer is over.
+        """
         station = self._stations[index]
-        if len(station.queue) + (station.frame is not None) >= self._queue_frames:
+        waiting = len(station.urgent) + len(station.queue)
+        if waiting + (station.frame is not None) >= self._queue_frames:
             return False
-        station.queue.append(frame)
+        (station.urgent if frame.urgent else station.queue).append(frame)
         if station.frame is None:
             self._serve(station, now, hold_back)
         return True
@@ -120,11 +126,11 @@ class Dcf:
             self._contention.leave(station)
         self._stations[index] = Station(index)
         head = [] if station.frame is None else [station.frame]
-        return head + list(station.queue)
+        return [*head, *station.urgent, *station.queue]
 
     def _serve(self, station: Station, now: int, hold_back: bool) -> None:
         """The head of the queue comes into service; it waits out a backoff that is still running."""
-        station.frame = frame = station.queue.popleft()
+        station.frame = frame = (station.urgent or station.queue).popleft()
         frame.service_start = now
         self._listener.on_service(station.index, frame, now)
         if not station.contending:
@@ -337,5 +343,5 @@ class Dcf:
         return frame
 
     def _serve_next(self, station: Station, now: int) -> None:
-        if station.frame is None and station.queue:
+        if station.frame is None and (station.urgent or station.queue):
             self._serve(station, now, hold_back=True)

@@ -59,9 +59,11 @@ class Cell:
         self.arrived: list[tuple[int, int, Frame]] = []
         self.given_up: list[Frame] = []
 
-    def send_at(self, time_us: float, sender: int, receiver: int, msdu_bytes: int = 800) -> Frame:
+    def send_at(
+        self, time_us: float, sender: int, receiver: int, msdu_bytes: int = 800, urgent: bool = False
+    ) -> Frame:
         """Hand a frame over at that time."""
-        frame = Frame(receiver, msdu_bytes, None)
+        frame = Frame(receiver, msdu_bytes, None, urgent)
 
         def hand_over(_: object, now: int) -> None:
             self.dcf.enqueue(sender, frame, now, False)
