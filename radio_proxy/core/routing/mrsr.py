@@ -166,8 +166,9 @@ class MrsrRouter:
         """Cache both directions of a route that lists this robot (RFC 4728, 8.1.4)."""
         if self._me in route:
             here = route.index(self._me)
-            self.cache.add(route[here:], now)
-            self.cache.add(route[: here + 1][::-1], now)
+            if here + 1 < len(route):
+                self.cache.add(route[here:], now)
+            self.cache.add(route[here::-1], now)
             self._flush(now)
 
     # Discovery by the origin.
@@ -232,6 +233,8 @@ class MrsrRouter:
 
     def _flush(self, now: int) -> None:
         """Send whatever waited for a route that the cache has now (RFC 4728, 8.2.6)."""
+        if not self._searches:
+            return
         for target in sorted(self._searches):
             if self.cache.find(target, now) is not None:
                 found = tuple(self._searches[target].waiting)
