@@ -2,6 +2,10 @@
 
 Here is also the event queue that everything above shares. Stations are indices.
 
+A broadcast is sent once, without RTS, ACK or repetition (9.2.7): beacons of two teams, and requests that
+neighbours pass on, may collide and are then lost. That is the standard's way, and nothing above relies
+on any single one: beacons come every period, requests are jittered and repeated.
+
 An exchange that nobody can disturb is taken in three events instead of eight: every station senses both
 of its ends, nothing else is on the air, nobody is about to speak, and it ends before the horizon. Its
 frames are judged as ever; only the gaps of a SIFS, in which nobody may speak, are not played.
