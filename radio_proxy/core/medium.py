@@ -73,7 +73,10 @@ class Medium:
 
     def is_busy(self, station: int) -> bool:
         """Physical carrier sense (802.11-1999, 15.4.8.4, mode 2: jams carry no DSSS signal)."""
-        return any(emission.row[station] >= self._sense_db for emission in self.on_air)
+        for emission in self.on_air:  # noqa: SIM110 (any() makes a generator of what is mostly empty)
+            if emission.row[station] >= self._sense_db:
+                return True
+        return False
 
     def reserve(
         self, emission: Emission, source: int, receiver: int, until: int, now: int
