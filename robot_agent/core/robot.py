@@ -5,7 +5,7 @@ Order of a tick: hear (protocol), drive (planner when leading, tracking when fol
 
 import math
 
-from onehop.contracts.airtime import ideal_throughput_bps
+from onehop.contracts.airtime import THESIS_THRESHOLD_BPS, threshold_bps
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map
 from onehop.contracts.messages import Action, Note, Percept, Ranges
 from onehop.contracts.randomness import generator
@@ -25,24 +25,17 @@ from robot_agent.core.standing import NANOSECONDS
 from robot_agent.core.tracking import sampled
 from robot_agent.core.trail import behind
 
-THESIS_THRESHOLD_BPS = 0.5333e6
-"""Minimum acceptable throughput [bit/s] (thesis 3.8.3)."""
-
-THRESHOLD_SHARE = THESIS_THRESHOLD_BPS / 0.7792e6
-"""The same as a share of the ideal throughput at 1 Mb/s and 800 B (eq. 3.15, full exchange)."""
-
 SETTLING_TICKS = 100
 """Ticks without coming nearer to its last slot after which a follower stops where it is."""
 
 FOLLOWER_MODES = (Mode.FOLLOWING, Mode.NARROW, Mode.BORDER)
 
 
-def threshold_bps(briefing: Briefing) -> float:
+def required_throughput_bps(briefing: Briefing) -> float:
     """Below this throughput a follower hurries [bit/s]."""
     if briefing.gains.threshold == "thesis":
         return THESIS_THRESHOLD_BPS
-    ideal = ideal_throughput_bps(briefing.radio.rate_mbps, briefing.team.next_msdu_bytes)
-    return THRESHOLD_SHARE * ideal
+    return threshold_bps(briefing.radio.rate_mbps, briefing.team.next_msdu_bytes)
 
 
 class Robot:
@@ -58,7 +51,7 @@ class Robot:
         self._follower = Follower(body, gains, fan, dodge)
         self._leader = Leader(briefing, gains, fan, make_pathfinder, rng)
         self._safety = SafetyFilter(body, fan, period)
-        self._threshold = threshold_bps(briefing)
+        self._threshold = required_throughput_bps(briefing)
         self._policy = make_policy(briefing.gains, self._threshold)
         self._protocol: Protocol | None = None
         self._formation: Formation | None = None
