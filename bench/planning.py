@@ -36,7 +36,7 @@ from onehop.contracts.sections import (
     StartSection,
 )
 from onehop.drive.solo import solo
-from robot_agent.core.planning import make_pathfinder
+from robot_agent.core.planning import make_pathfinder, nobody
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
 from robot_agent.core.planning.view import NO_POINTS, View
 from robot_agent.core.scan import Fan, FloatArray
@@ -144,7 +144,7 @@ def following(ticks: int) -> dict[str, float]:
         scan = laser.scans(pose, np.zeros(1, dtype=np.int32))[0]
         place, before = Pose(*map(float, pose[0])), finder.survey
         began = time.perf_counter()
-        twist = finder.step(place, scan, frozenset()).twist
+        twist = finder.step(place, scan, nobody).twist
         took = (time.perf_counter() - began) * 1e6
         every.append(took)
         if finder.survey is before:
