@@ -102,8 +102,7 @@ class Leader:
             return STANDSTILL
         if self._pathfinder is None:
             self._pathfinder = self._make_pathfinder(self._briefing, pose, self._rng)
-        mates = self._mates(protocol, now_ns, pose, scan)
-        guidance = self._pathfinder.step(pose, scan, mates)
+        guidance = self._pathfinder.step(pose, scan, lambda: self._mates(protocol, now_ns, pose, scan))
         self.notes = guidance.notes
         self.remaining = guidance.remaining
         if guidance.progress is not Progress.DRIVING:
@@ -139,8 +138,7 @@ class Leader:
         if len(protocol.members) < 3:
             protocol.narrow = False
             return
-        needed = width(formation(protocol.members, False, team.spacing)) + 4.0 * body.radius
-        if 2.0 * body.radius < passage < min(needed, WIDEST_PASSAGE):
+        if 2.0 * body.radius < passage < WIDEST_PASSAGE and passage < self._needed(protocol):
             self._wide_for = 0.0
             self._narrow_for += self._period
             if not protocol.narrow and self._narrow_for >= NARROW_AFTER:
@@ -153,6 +151,11 @@ class Leader:
         if protocol.narrow and self._wide_for * body.leader_speed > column:
             protocol.narrow = False
             protocol.note("wide", passage=passage)
+
+    def _needed(self, protocol: Protocol) -> float:
+        """Free width that the shape of the team needs [m]."""
+        shape = formation(protocol.members, False, self._briefing.team.spacing)
+        return width(shape) + 4.0 * self._briefing.body.radius
 
     def _jammed(self, pose: Pose, nearest: float) -> bool:
         """Whether the leader stands among its mates for too long, or is still on its way out."""
