@@ -18,6 +18,7 @@ from onehop.contracts.scenario import Briefing
 from onehop.contracts.sections import GainsSection
 from onehop.contracts.team import Mode
 from robot_agent.core.formation import formation, width
+from robot_agent.core.lane import LaneRequest
 from robot_agent.core.mates import Lookout
 from robot_agent.core.messages import Phase
 from robot_agent.core.modes import Event
@@ -72,6 +73,7 @@ class Leader:
         self._rng = rng
         self._lookout = Lookout(briefing.body, fan)
         self._steering = Steering(briefing.body, fan)
+        self._request = LaneRequest(fan, briefing.period_ns / NANOSECONDS)
         self._period = briefing.period_ns / NANOSECONDS
         self._pathfinder: Pathfinder | None = None
         self.trail: list[tuple[float, float]] = []
@@ -88,6 +90,7 @@ class Leader:
         if self.trail:
             self._pathfinder = None
             self.trail.clear()
+            self._request.begin()
             self._still_for = self._unjam = self._narrow_for = 0.0
 
     def step(self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float) -> Twist:
@@ -108,10 +111,16 @@ class Leader:
         self.remaining = guidance.remaining
         if guidance.progress is not Progress.DRIVING:
             protocol.phase = Phase.FINAL
+            protocol.keep_clear((), False)
             protocol.fire(Event.ARRIVED)
             protocol.note("arrived" if guidance.progress is Progress.ARRIVED else "no_way")
             return STANDSTILL
         self._watch_passage(protocol, guidance.passage)
+        if protocol.open:
+            say = self._request.watch(pose, scan, mates, guidance.waypoint)
+            protocol.keep_clear(self._request.lane, say)
+            if self._request.wait:
+                return Twist(0.0, guidance.twist.w)
         if self._jammed(pose, nearest):
             return self._around(pose, scan, guidance)
         return self._waiting(protocol, guidance.twist)

@@ -10,7 +10,8 @@ A first incarnation starts in `setup`; a restarted one in `joining`, because it 
 not act on an old one. Three families of modes follow:
 - acting as leader: `leading`, or `alone` when it is the only member;
 - following: `following`, `narrow` in the column, `border following` while an obstacle lies between the
-  robot and its slot (it interrupts Algorithm 1 and resumes it, thesis 3.3.4);
+  robot and its slot (it interrupts Algorithm 1 and resumes it, thesis 3.3.4), `giving way` while the
+  leader wants a lane kept clear (lane.py);
 - without a leader: `lost leader` while the elected one is not heard, `joining` while it asks to be
   taken in.
 `stopped` is where a mission ends: the leader at its goal, a follower in its last slot, or a robot of
@@ -29,6 +30,7 @@ class Event(StrEnum):
     TOLD_SETUP = "told setup"  # obeys a command of a team that still gathers
     TOLD_NEXT = "told next"  # obeys a command to drive in the open
     TOLD_NARROW = "told narrow"  # obeys a command to drive in column
+    TOLD_TO_MAKE_ROOM = "told to make room"  # obeys a command to keep a lane clear
     OBSTRUCTED = "obstructed"  # an obstacle lies between it and its slot
     CLEARED = "cleared"  # back in the clear, in the open
     CLEARED_NARROW = "cleared in column"  # back in the clear, in column
@@ -48,6 +50,7 @@ _ANY = {
     Event.TOLD_SETUP: Mode.SETUP,
     Event.TOLD_NEXT: Mode.FOLLOWING,
     Event.TOLD_NARROW: Mode.NARROW,
+    Event.TOLD_TO_MAKE_ROOM: Mode.GIVING_WAY,
     Event.ELECTED: Mode.LEADING,
     Event.LEFT_ALONE: Mode.ALONE,
     Event.GAVE_WAY: Mode.FOLLOWING,
@@ -74,6 +77,7 @@ TABLE: dict[Mode, dict[Event, Mode]] = {
         Event.CLEARED: Mode.FOLLOWING,
         Event.CLEARED_NARROW: Mode.NARROW,
     },
+    Mode.GIVING_WAY: {**_LED, Event.ARRIVED: Mode.STOPPED},
     Mode.LOST_LEADER: _LED,
     Mode.JOINING: _LED,
     Mode.STOPPED: {**_LED, Event.ARRIVED: Mode.STOPPED},

@@ -167,6 +167,8 @@ class Robot:
         self._settle(protocol)
         if self._at_rest(protocol):
             return STANDSTILL
+        if protocol.mode is Mode.GIVING_WAY:
+            return self._follower.draw_aside(pose, scan, link.lane)
         moves = protocol.phase is Phase.DRIVING
         standoff = math.hypot(target.x - leader.x, target.y - leader.y)
         twist = self._follower.step(
