@@ -2,9 +2,9 @@
 
 A planner that takes team mates for walls finds itself locked in by them, and one that leaves their beams
 out takes what they hide for a way on. So they are painted over: a wall on both sides of a mate goes on
-behind it. A follower is a run of neighbouring beams that stands free (what is beside it is farther away),
-is as wide as a robot, and lies where the follower's last report lets it be by now; or it is whatever is
-seen right where a follower reported itself. Whatever is none of that stays an obstacle.
+behind it. A follower is a run of neighbouring beams that stands free (what is beside it is farther
+away), is as wide as a robot, and lies where the follower's last report lets it be by now; or it is
+whatever is seen right where a follower reported itself. Whatever is none of that stays an obstacle.
 """
 
 import math

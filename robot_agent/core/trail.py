@@ -41,7 +41,7 @@ class Trail:
             del points[:-POINTS]
 
     def course(self, pose: Pose) -> float:
-        """Direction in which the formation looks [rad]: along the trail, or the heading where it begins."""
+        """Direction in which the formation looks [rad]: along the trail; the heading where it begins."""
         for x, y in reversed(self.points):
             if math.hypot(pose.x - x, pose.y - y) >= BASE:
                 return math.atan2(pose.y - y, pose.x - x)
