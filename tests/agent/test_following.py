@@ -125,6 +125,26 @@ def test_a_point_that_slips_out_of_sight_at_a_corner_is_still_headed_for():
     assert (aim.distance, aim.known, aim.last) == (3.5, True, True)
 
 
+def test_a_follower_comes_back_along_the_piece_that_the_leader_drove_twice():
+    steering = Steering(BODY, FAN)
+    pursuit = Pursuit(steering)
+    trail = ((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (4.0, 8.0))
+    steering.look(OPEN)
+    assert pursuit.watch(Pose(4.0, 5.0, math.pi / 2), trail)
+    steering.look(np.full(181, 0.6, np.float32))
+    assert pursuit.aim(Pose(4.0, 8.0, math.pi / 2), trail) is not None
+    steering.look(OPEN)
+    cut = ((0.0, 0.0), (4.0, 0.0), (0.0, -1.0))
+    aim = pursuit.aim(Pose(4.0, 7.9, -math.pi / 2), cut)
+    assert aim.known
+    assert aim.bearing == pytest.approx(0.0, abs=0.6)
+    hidden = np.full(181, np.inf, np.float32)
+    hidden[:60] = 1.0
+    steering.look(hidden)
+    aim = pursuit.aim(Pose(4.0, 7.9, -math.pi / 2), cut)
+    assert (aim.distance, aim.bearing) == (pytest.approx(7.9), pytest.approx(0.0)), "around the corner"
+
+
 def test_a_column_drives_on_the_leaders_way_around_a_corner():
     trail = ((0.0, 0.0), (4.0, 0.0), (4.0, 3.0))
     pose = behind(Pose(4.0, 3.0, math.pi / 2), trail, 4.0)
