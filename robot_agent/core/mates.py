@@ -2,24 +2,43 @@
 
 A planner that takes team mates for walls finds itself locked in by them, and one that leaves their beams
 out takes what they hide for a way on. So they are painted over: a wall on both sides of a mate goes on
-behind it. A follower is a run of neighbouring beams that stands free (what is beside it is farther
-away), is as wide as a robot, and lies where the follower's last report lets it be by now; or it is
-whatever is seen right where a follower reported itself. Whatever is none of that stays an obstacle.
+behind it. A follower is a disc of a robot's size in the scan, where the follower's last report lets it
+be by now; or it is whatever is seen right where a follower reported itself. Whatever is none of that
+stays an obstacle.
+
+The disc is found by a matched filter: with the hull of a robot before every beam in turn, the ranges
+around it are known, and the scan must agree with them. So a robot is found beside a wall and half behind
+another robot as well, where it does not stand free.
 """
 
 import math
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
-from onehop.contracts.geometry import Pose, to_local, to_map
+from onehop.contracts.geometry import Pose, to_local
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import RobotSection
-from robot_agent.core.scan import Fan
+from robot_agent.core.scan import Fan, FloatArray
 
-JUMP = 0.3
-"""Change of range between neighbouring beams that separates two things [m]."""
+HULL_ERROR = 0.05
+"""How far a range may be from that of a disc [m]: its middle need not lie on a beam."""
 
+INNER = 0.85
+"""Share of the radius within which ranges are compared [1]: at the rim a disc falls off too fast."""
+
+LEAST_SEEN = 0.6
+"""Share of the hull that must be seen; something nearer may hide the rest."""
+
+OPEN_SIDE = 0.25
+"""Change of range at one of the rims at least [m]: a flat wall far away looks like a flat hull."""
+
+LEAST_BEAMS = 3
+"""Beams that tell a disc from a post."""
+
+IntArray = npt.NDArray[np.intp]
+BoolArray = npt.NDArray[np.bool_]
 
 AT_HAND = 0.1
 """A hit this near to the hull of a reported robot is that robot [m]."""
@@ -55,69 +74,68 @@ def painted(scan: Ranges, mates: frozenset[int]) -> Ranges:
     return clean
 
 
-LEAST_SHARE = 0.6
-"""Least part of a robot's width that a run must have [1]: a wall seen at a grazing angle falls apart
-into runs of a beam or two, none of them a robot."""
-
-
 class Lookout:
     """Finds followers in scans."""
 
     def __init__(self, body: RobotSection, fan: Fan) -> None:
         self._radius = body.radius
-        self._width = 2.0 * body.radius + 0.05
         self._range = fan.range
         self._angles = fan.angles
-        self._spacing = float(fan.angles[1] - fan.angles[0])
         self._directions = fan.directions
+        self._spacing = float(fan.angles[1] - fan.angles[0])
 
     def beams(
         self, pose: Pose, scan: Ranges, places: Sequence[tuple[float, float]], reach: float
     ) -> frozenset[int]:
         """Beams that hit a robot within `reach` of one of the places [m], map frame."""
         sight = self._range + reach
-        c, s = math.cos(pose.heading), math.sin(pose.heading)
-        places = [
-            (x, y)
-            for x, y in places
-            if math.hypot(x - pose.x, y - pose.y) < sight
-            and (x - pose.x) * c + (y - pose.y) * s > -reach
-        ]
-        if not places:
-            return frozenset()
-        ranges = np.minimum(scan, self._range + 2.0 * JUMP)
-        edges = np.flatnonzero(np.abs(np.diff(ranges)) > JUMP) + 1
-        found: list[int] = []
-        starts = [0, *edges.tolist()]
-        for first, end in zip(starts, [*starts[1:], len(scan)], strict=True):
-            distance = float(ranges[(first + end - 1) // 2])
-            if distance > self._range:
-                continue
-            spread = float(self._angles[end - 1] - self._angles[first])
-            if 2.0 * distance * math.sin(min(spread, math.pi) / 2.0) > self._width:
-                continue
-            expected = 2.0 * math.asin(self._radius / (distance + self._radius)) / self._spacing
-            if end - first < LEAST_SHARE * expected or not _in_front(ranges, first, end):
-                continue
-            middle = 0.5 * float(self._angles[end - 1] + self._angles[first])
-            centre = distance + self._radius
-            x, y = to_map(pose, centre * math.cos(middle), centre * math.sin(middle))
-            if any(math.hypot(x - px, y - py) <= reach for px, py in places):
-                found.extend(range(first, end))
-        return frozenset(found).union(self._at_hand(pose, scan, places))
-
-    def _at_hand(self, pose: Pose, scan: Ranges, places: Sequence[tuple[float, float]]) -> list[int]:
-        """Beams that hit something right at one of the places."""
+        own = [to_local(pose, x, y) for x, y in places]
+        own = [(x, y) for x, y in own if x > -reach and math.hypot(x, y) < sight]
         seen = np.flatnonzero(scan <= self._range)
+        if not own or not len(seen):
+            return frozenset()
+        nearest = seen[self._nearest(scan)[seen]]
+        centres = self._directions[nearest] * (scan[nearest, None] + self._radius)
+        possible = nearest[_apart(centres, np.array(own)) <= reach]
+        found = self._discs(scan, possible)
         hits = self._directions[seen] * scan[seen, None]
-        own = np.array([to_local(pose, x, y) for x, y in places])
-        apart = hits[:, None, :] - own[None, :, :]
-        near = (apart * apart).sum(axis=2) <= (self._radius + AT_HAND) ** 2
-        found: list[int] = seen[near.any(axis=1)].tolist()
+        at_hand = seen[_apart(hits, np.array(own)) <= self._radius + AT_HAND]
+        return frozenset(found.tolist()).union(at_hand.tolist())
+
+    def _nearest(self, scan: Ranges) -> BoolArray:
+        """Which beams see no farther than their neighbours, as one on the middle of a disc does."""
+        edged = np.concatenate((scan[:1], scan, scan[-1:]))
+        nearest: BoolArray = (scan <= edged[:-2]) & (scan <= edged[2:])
+        return nearest
+
+    def _discs(self, scan: Ranges, middles: IntArray) -> IntArray:
+        """Beams of all discs of a robot's size whose middle is seen by one of these beams."""
+        if not len(middles):
+            return middles
+        radius, count = self._radius, len(scan)
+        far = scan[middles].astype(np.float64)[:, None] + radius
+        most = math.asin(min(1.0, radius / float(far.min())))
+        steps = np.arange(-int(most / self._spacing) - 1, int(most / self._spacing) + 2)
+        beside = far * np.sin(steps * self._spacing)
+        hull = far * np.cos(steps * self._spacing)
+        hull -= np.sqrt(np.maximum(0.0, radius * radius - beside * beside))
+        place = middles[:, None] + steps
+        in_view = (place >= 0) & (place < count)
+        ranges = np.where(in_view, scan[np.clip(place, 0, count - 1)], np.inf)
+        off = ranges - hull
+        inner = (np.abs(beside) <= INNER * radius) & in_view
+        agrees = inner & (np.abs(off) <= HULL_ERROR)
+        enough = np.maximum(LEAST_SEEN * inner.sum(axis=1), LEAST_BEAMS)
+        outside = (np.abs(beside) > radius) & (np.abs(beside) <= 2.0 * radius) & in_view
+        free = (outside & (np.abs(ranges - scan[middles][:, None]) > OPEN_SIDE)).any(axis=1)
+        disc = free & (agrees.sum(axis=1) >= enough) & ~(inner & (off > HULL_ERROR)).any(axis=1)
+        rim = (np.abs(beside) <= 1.1 * radius) & in_view & (np.abs(off) <= radius)
+        found: IntArray = place[disc][rim[disc]]
         return found
 
 
-def _in_front(ranges: Ranges, first: int, end: int) -> bool:
-    """Whether what is seen on both sides of a run is farther away than its ends."""
-    left_free = first == 0 or ranges[first - 1] > ranges[first]
-    return bool(left_free and (end == len(ranges) or ranges[end] > ranges[end - 1]))
+def _apart(points: FloatArray, places: FloatArray) -> FloatArray:
+    """Distance of each point to the nearest place, (n,) [m]."""
+    between = points[:, None, :] - places[None, :, :]
+    apart: FloatArray = np.sqrt((between * between).sum(axis=2).min(axis=1, initial=np.inf))
+    return apart
