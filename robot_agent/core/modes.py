@@ -18,6 +18,7 @@ not act on an old one. Three families of modes follow:
 profile `thesis` that hears nobody and is told to stop.
 """
 
+from collections.abc import Iterable
 from enum import StrEnum
 
 from onehop.contracts.team import Mode
@@ -94,19 +95,33 @@ def next_mode(mode: Mode, event: Event) -> Mode:
 
 
 def diagram() -> str:
-    """The table as a Mermaid state diagram, one edge for each pair of modes."""
+    """The table as a Mermaid state diagram.
+
+    What leads to the same mode from everywhere is drawn once, from `any_mode`; a mode that answers such
+    an event in another way has an edge of its own. Other edges from a mode to itself are left out.
+    """
 
     def name(mode: Mode) -> str:
         return mode.value.replace(" ", "_")
 
     lines = ["stateDiagram-v2", f"    [*] --> {name(START)}", f"    [*] --> {name(RESTART)}: restarted"]
+    lines += _edges("any_mode", _ANY.items())
     for mode, row in TABLE.items():
-        edges: dict[Mode, list[str]] = {}
-        for event, target in row.items():
-            if target is not mode:
-                edges.setdefault(target, []).append(event.value)
-        lines += [
-            f"    {name(mode)} --> {name(target)}: {', '.join(events)}"
-            for target, events in edges.items()
+        own = [
+            (event, target)
+            for event, target in row.items()
+            if (_ANY[event] is not target if event in _ANY else target is not mode)
         ]
+        lines += _edges(name(mode), own)
     return "\n".join(lines) + "\n"
+
+
+def _edges(source: str, transitions: Iterable[tuple[Event, Mode]]) -> list[str]:
+    """One line of the diagram for each mode that these transitions lead to."""
+    events: dict[Mode, list[str]] = {}
+    for event, target in transitions:
+        events.setdefault(target, []).append(event.value)
+    return [
+        f"    {source} --> {target.value.replace(' ', '_')}: {', '.join(names)}"
+        for target, names in events.items()
+    ]
