@@ -2,7 +2,7 @@
 
     python bench/gains.py --seeds 5 --lines runs/gains.jsonl
 
-Every mission adds a line to the file as it ends; with the same file the program goes on where it stopped.
+Every mission adds a line to the file as it ends; with the same file the program goes on.
 Each policy drives the same missions: a study map on which all followers stand still for a while at 60 s,
 as in the thesis (chapter 4). Per policy, medians over the seeds of
 - arrival_s: simulated time until the mission ended,
