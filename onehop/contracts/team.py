@@ -13,6 +13,7 @@ class Mode(StrEnum):
     FOLLOWING = "following"
     NARROW = "narrow"
     BORDER = "border following"
+    GIVING_WAY = "giving way"
     LOST_LEADER = "lost leader"
     ALONE = "alone"
     JOINING = "joining"

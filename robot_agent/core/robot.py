@@ -82,9 +82,10 @@ class Robot:
             twist = self._lead(protocol, now_ns, pose, percept.scan, nearest)
         else:
             twist = self._follow(protocol, now_ns, pose, percept.scan, nearest)
-        twist = self._safety.filtered(twist, percept.scan, nearest)
+        blind = self._briefing.gains.reverse and not protocol.leading
+        twist = self._safety.filtered(twist, percept.scan, nearest, blind)
         if not (protocol.leading and protocol.mode is Mode.SETUP and twist.w):
-            protocol.speak(now_ns, pose, self._leader.trail)
+            protocol.speak(now_ns, self._told_pose(protocol, pose), self._leader.trail.points)
         notes = (*self._notes, *protocol.take_notes())
         self._notes = []
         return Action(
@@ -160,6 +161,8 @@ class Robot:
         self._settle(protocol)
         if self._at_rest(protocol):
             return STANDSTILL
+        if protocol.mode is Mode.GIVING_WAY:
+            return self._follower.draw_aside(pose, scan, link.lane)
         moves = protocol.phase is Phase.DRIVING
         standoff = math.hypot(target.x - leader.x, target.y - leader.y)
         twist = self._follower.step(
@@ -167,6 +170,12 @@ class Robot:
         )
         self._tell_border(protocol)
         return twist
+
+    def _told_pose(self, protocol: Protocol, pose: Pose) -> Pose:
+        """What followers form up on: in profile `team` the course instead of the heading (trail.py)."""
+        if not protocol.open or not protocol.leading or protocol.mode is Mode.SETUP:
+            return pose
+        return Pose(pose.x, pose.y, self._leader.trail.course(pose))
 
     def _slot_pose(self, protocol: Protocol, leader: Pose) -> Pose:
         """This robot's slot in the map frame, from the leader's last pose."""

@@ -20,7 +20,7 @@ NEXT_PERIOD = 2.0
 TEAM = TeamSection()
 BOUND = 4 * NEXT_PERIOD + (TEAM.lost_after + 1) * NEXT_PERIOD
 """Quiet time after which one team is asked for [s]: B = 4 Next periods, and the time in which the dead
-that were taken over from the other team's list are given up again."""
+that were taken over from the other team's list are given up again (derived in docs/modes.md)."""
 
 robots = st.integers(1, 6)
 
