@@ -5,6 +5,7 @@ SI units, radians, x forward, y left. Headings are wrapped to (-pi, pi].
 
 import math
 
+from onehop.contracts import elementary
 from onehop.contracts.values import Value
 
 TAU = 2.0 * math.pi
@@ -36,12 +37,12 @@ def wrap_angle(angle: float) -> float:
 
 def to_map(origin: Pose, x: float, y: float) -> tuple[float, float]:
     """A point given in the frame of `origin`, in the map frame [m]."""
-    c, s = math.cos(origin.heading), math.sin(origin.heading)
+    c, s = elementary.cos(origin.heading), elementary.sin(origin.heading)
     return origin.x + c * x - s * y, origin.y + s * x + c * y
 
 
 def to_local(origin: Pose, x: float, y: float) -> tuple[float, float]:
     """A point given in the map frame, in the frame of `origin` [m]."""
-    c, s = math.cos(origin.heading), math.sin(origin.heading)
+    c, s = elementary.cos(origin.heading), elementary.sin(origin.heading)
     dx, dy = x - origin.x, y - origin.y
     return c * dx + s * dy, c * dy - s * dx

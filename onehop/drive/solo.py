@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Note
 from onehop.contracts.randomness import generator
@@ -47,7 +48,7 @@ class Solo:
     @property
     def length(self) -> float:
         """Length of the path [m]."""
-        return float(np.hypot(*np.diff(self.path[:, :2], axis=0).T).sum())
+        return float(elementary.lengths(*np.diff(self.path[:, :2], axis=0).T).sum())
 
     def summary(self) -> dict[str, bool | int | float | str]:
         """The keys that `onehop plan --json` promises, without shortest_m."""
@@ -139,7 +140,7 @@ def _alone(scenario: Scenario) -> Scenario:
     if start.poses:
         start = replace(start, poses=start.poses[:1])
     else:
-        ahead = math.atan2(scenario.goal.y - start.y, scenario.goal.x - start.x)
+        ahead = elementary.atan2(scenario.goal.y - start.y, scenario.goal.x - start.x)
         start = replace(start, poses=((start.x, start.y, math.degrees(ahead)),))
     return replace(scenario, start=start, team=replace(scenario.team, ids=(robot,)), faults=())
 

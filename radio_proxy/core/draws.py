@@ -4,6 +4,10 @@ import numpy as np
 
 _BLOCK = 512
 
+_GRAIN = 2.0**-20
+"""Normal numbers are multiples of this: beyond 3.65 the generator takes a logarithm from the C library,
+whose last place depends on the processor."""
+
 
 class Draws:
     """Uniform and normal draws of one generator, each in the order in which the events need them."""
@@ -26,7 +30,8 @@ class Draws:
         try:
             return self._normal.pop()
         except IndexError:
-            self._normal = self._stream.standard_normal(_BLOCK).tolist()
+            drawn = self._stream.standard_normal(_BLOCK)
+            self._normal = (np.rint(drawn / _GRAIN) * _GRAIN).tolist()
             return self._normal.pop()
 
     def slots(self, window: int) -> int:

@@ -7,6 +7,8 @@ spreading gains. The laws are those of ns-3's DsssErrorRateModel, whose table is
 import math
 from functools import lru_cache
 
+from onehop.contracts import elementary
+
 CERTAIN_SINR_DB = 20.0
 """From here on every 802.11b rate loses less than 1e-12 of its frames, which counts as none: no draw."""
 
@@ -16,7 +18,7 @@ _STEP = 0.01
 
 def dbpsk_ber(sinr: float) -> float:
     """Bit error rate of DBPSK, 1 Mb/s."""
-    return 0.5 * math.exp(-22.0 * sinr)
+    return 0.5 * elementary.exp(-22.0 * sinr)
 
 
 def dqpsk_ber(sinr: float) -> float:
@@ -25,7 +27,7 @@ def dqpsk_ber(sinr: float) -> float:
     if x <= 0.0:
         return 0.5
     scale = (math.sqrt(2.0) + 1.0) / math.sqrt(8.0 * math.pi * math.sqrt(2.0))
-    return min(0.5, scale / math.sqrt(x) * math.exp(-(2.0 - math.sqrt(2.0)) * x))
+    return min(0.5, scale / math.sqrt(x) * elementary.exp(-(2.0 - math.sqrt(2.0)) * x))
 
 
 @lru_cache(maxsize=4096)
@@ -39,9 +41,11 @@ def cck16_symbol_error(energy: float) -> float:
     for k in range(steps + 1):
         x = start + k * width
         weight = 1.0 if k in (0, steps) else (4.0 if k % 2 else 2.0)
-        total += weight * math.erf((x + beta) / math.sqrt(2.0)) ** 7 * math.exp(-0.5 * x * x)
-    right = total * width / 3.0 / math.sqrt(2.0 * math.pi)
-    return min(1.0, max(0.0, 1.0 - right))
+        right = elementary.erf((x + beta) / math.sqrt(2.0))
+        cubed = right * right * right
+        total += weight * cubed * cubed * right * elementary.exp(-0.5 * x * x)
+    all_right = total * width / 3.0 / math.sqrt(2.0 * math.pi)
+    return min(1.0, max(0.0, 1.0 - all_right))
 
 
 def cck55_symbol_error(sinr: float) -> float:
@@ -51,21 +55,22 @@ def cck55_symbol_error(sinr: float) -> float:
 
 def cck11_symbol_error(sinr: float) -> float:
     """Error probability of a CCK symbol of 8 bits, 11 Mb/s."""
-    return 1.0 - (1.0 - cck16_symbol_error(4.0 * sinr)) ** 2
+    right = 1.0 - cck16_symbol_error(4.0 * sinr)
+    return 1.0 - right * right
 
 
 def bit_error_rate(rate_mbps: float, sinr_db: float) -> float:
     """Bit error rate at a rate; for CCK the rate that gives the same frame success bit by bit."""
     if sinr_db >= CERTAIN_SINR_DB:
         return 0.0
-    sinr = 10.0 ** (sinr_db / 10.0)
+    sinr = elementary.power_of_ten(sinr_db / 10.0)
     if rate_mbps == 1.0:
         return dbpsk_ber(sinr)
     if rate_mbps == 2.0:
         return dqpsk_ber(sinr)
     if rate_mbps == 5.5:
-        return -math.expm1(math.log1p(-min(cck55_symbol_error(sinr), 1.0 - 1e-15)) / 4.0)
-    return -math.expm1(math.log1p(-min(cck11_symbol_error(sinr), 1.0 - 1e-15)) / 8.0)
+        return -elementary.expm1(elementary.log1p(-min(cck55_symbol_error(sinr), 1.0 - 1e-15)) / 4.0)
+    return -elementary.expm1(elementary.log1p(-min(cck11_symbol_error(sinr), 1.0 - 1e-15)) / 8.0)
 
 
 def frame_success(rate_mbps: float, sinr_db: float, bits: int) -> float:

@@ -9,9 +9,9 @@ at mean power too, because beyond carrier sense only they matter, and a draw for
 every frame would cost more than the rest of the model.
 """
 
-import math
 from dataclasses import dataclass
 
+from onehop.contracts import elementary
 from onehop.contracts.messages import Fate
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.error_rates import CERTAIN_SINR_DB, frame_success
@@ -135,8 +135,8 @@ class Medium:
     def _mean_sinr_db(self, emission: Emission, station: int) -> float:
         rise_db = self.field.noise_rise_db[station]
         if emission.overlaps:
-            noise = 10.0 ** (rise_db / 10.0)
+            noise = elementary.power_of_ten(rise_db / 10.0)
             for row in emission.overlaps:
-                noise += 10.0 ** (row[station] / 10.0)
-            rise_db = 10.0 * math.log10(noise)
+                noise += elementary.power_of_ten(row[station] / 10.0)
+            rise_db = 10.0 * elementary.log10(noise)
         return emission.row[station] - rise_db

@@ -8,6 +8,7 @@ the fading X is drawn by the medium.
 import math
 from dataclasses import dataclass, replace
 
+from onehop.contracts import elementary
 from onehop.contracts.messages import Cut, Jam, Presence
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import delay_ns
@@ -44,7 +45,7 @@ class LinkBudget:
     def mean_snr_db(self, distance: float) -> float:
         """Mean SNR without walls at a distance [m]; nearer than d0 counts as d0."""
         ratio = max(distance / self.reference_distance, 1.0)
-        return self.snr_reference_db - 10.0 * self.exponent * math.log10(ratio)
+        return self.snr_reference_db - 10.0 * self.exponent * elementary.log10(ratio)
 
     def without_fading(self) -> "LinkBudget":
         """The same budget with every frame at its mean SNR."""
@@ -54,20 +55,22 @@ class LinkBudget:
     def reach(self) -> float:
         """Distance beyond which nothing is heard and nothing disturbed [m]."""
         margin = self.snr_reference_db - REACH_DB
-        return self.reference_distance * math.pow(10.0, max(0.0, margin / (10.0 * self.exponent)))
+        return self.reference_distance * elementary.power_of_ten(
+            max(0.0, margin / (10.0 * self.exponent))
+        )
 
 
 def free_space_loss_db(distance: float, frequency_hz: float) -> float:
     """Friis loss at a distance [m] (40.046 dB at 1 m, 2.4 GHz)."""
-    return 20.0 * math.log10(4.0 * math.pi * distance * frequency_hz / WAVE_SPEED)
+    return 20.0 * elementary.log10(4.0 * math.pi * distance * frequency_hz / WAVE_SPEED)
 
 
 _PRESETS: dict[str, dict[str, float]] = {
     # 0.2 W; the floor that gives the SNR of 60 dB at 1 m of the thesis's figures.
     "thesis": {
-        "tx_power_dbm": 10.0 * math.log10(200.0),
+        "tx_power_dbm": 10.0 * elementary.log10(200.0),
         "path_loss_exponent": 2.0,
-        "noise_dbm": 10.0 * math.log10(200.0) - free_space_loss_db(1.0, 2.4e9) - 60.0,
+        "noise_dbm": 10.0 * elementary.log10(200.0) - free_space_loss_db(1.0, 2.4e9) - 60.0,
     },
     # 15 dBm and a noise figure of 7 dB: what a laptop card of 802.11b has.
     "physical": {
@@ -230,25 +233,25 @@ class Field:
         total = 1.0
         for jam in self._jams:
             if math.hypot(place[0] - jam.x, place[1] - jam.y) <= jam.radius:
-                total += 10.0 ** ((jam.noise_dbm - self.budget.noise_dbm) / 10.0)
-        return 10.0 * math.log10(total)
+                total += elementary.power_of_ten((jam.noise_dbm - self.budget.noise_dbm) / 10.0)
+        return 10.0 * elementary.log10(total)
 
     def _hear(self, sender: int) -> list[float]:
         """The row of a sender; the path loss of mean_snr_db, by squared distances, for all in reach."""
         row = [SILENT_DB] * self._count
         budget = self.budget
-        reach, nearest = budget.reach, budget.reference_distance**2
+        reach, nearest = budget.reach, budget.reference_distance * budget.reference_distance
         reference_db, slope_db = budget.snr_reference_db, 5.0 * budget.exponent
         x, y = self._place[sender]
         column, line = math.floor(x / reach), math.floor(y / reach)
         for near in ((column + dx, line + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)):
             for other, there_x, there_y in self._cells.get(near, ()):
-                dx, dy = there_x - x, there_y - y
-                square = dx * dx + dy * dy
+                east, north = there_x - x, there_y - y
+                square = east * east + north * north
                 if square <= nearest:
                     row[other] = reference_db
                 elif square <= reach * reach:
-                    row[other] = reference_db - slope_db * math.log10(square / nearest)
+                    row[other] = reference_db - slope_db * elementary.log10(square / nearest)
                 else:
                     continue
                 if self._walls:

@@ -14,6 +14,7 @@ Differs: a slot behind the robot is turned to on the spot first, not driven to b
 import math
 from collections.abc import Sequence
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import GainsSection, RobotSection
@@ -197,8 +198,8 @@ class Follower:
 
     def _steer(self, direction: float, speed: float) -> Twist:
         """Drive in a direction, slowly while it is still turned to."""
-        facing = max(0.0, math.cos(direction)) ** 2
-        return Twist(speed * facing, turn_towards(direction, self._gains, self._body).w)
+        facing = max(0.0, elementary.cos(direction))
+        return Twist(speed * facing * facing, turn_towards(direction, self._gains, self._body).w)
 
     def _stuck(self) -> None:
         self._idle += 1

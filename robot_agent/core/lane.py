@@ -15,6 +15,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import GainsSection, RobotSection
@@ -106,9 +107,12 @@ class LaneRequest:
         if not mates:
             return math.inf
         beams = np.fromiter(mates, dtype=np.intp, count=len(mates))
-        bearing = math.atan2(waypoint[1] - pose.y, waypoint[0] - pose.x) - pose.heading
+        bearing = elementary.atan2(waypoint[1] - pose.y, waypoint[0] - pose.x) - pose.heading
         off = self._angles[beams] - wrap_angle(bearing)
-        ahead, beside = scan[beams] * np.cos(off), scan[beams] * np.abs(np.sin(off))
+        ahead, beside = (
+            scan[beams] * elementary.cosines(off),
+            scan[beams] * np.abs(elementary.sines(off)),
+        )
         return float(ahead.min(where=(ahead > 0.0) & (beside < MET_BESIDE), initial=math.inf))
 
 
@@ -127,9 +131,9 @@ class DrawAside:
         if distance >= HALF_WIDTH:
             return STANDSTILL
         if distance < 1e-3:
-            away = math.atan2(lane[1][1] - lane[0][1], lane[1][0] - lane[0][0]) + 0.5 * math.pi
+            away = elementary.atan2(lane[1][1] - lane[0][1], lane[1][0] - lane[0][0]) + 0.5 * math.pi
         else:
-            away = math.atan2(pose.y - y, pose.x - x)
+            away = elementary.atan2(pose.y - y, pose.x - x)
         bearing = wrap_angle(away - pose.heading)
         if abs(bearing) > FACING:
             return turn_towards(bearing, self._gains, self._body)
@@ -138,7 +142,7 @@ class DrawAside:
         if choice is None:
             return turn_towards(math.copysign(0.4, bearing), self._gains, self._body)
         direction, free = choice
-        speed = min(HURRY, max(0.0, free) / REACTION) * max(0.0, math.cos(direction)) ** 2
+        speed = min(HURRY, max(0.0, free) / REACTION) * max(0.0, elementary.cos(direction)) ** 2
         return Twist(speed, turn_towards(direction, self._gains, self._body).w)
 
 

@@ -12,6 +12,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map, wrap_angle
 from onehop.contracts.messages import Note, Ranges
 from onehop.contracts.scenario import Briefing
@@ -97,7 +98,7 @@ class Leader:
         self.notes = ()
         self.trail.mark(pose)
         if protocol.mode is Mode.SETUP:
-            bearing = wrap_angle(math.atan2(goal.y - pose.y, goal.x - pose.x) - pose.heading)
+            bearing = wrap_angle(elementary.atan2(goal.y - pose.y, goal.x - pose.x) - pose.heading)
             return turn_towards(bearing, self._gains, body) if abs(bearing) >= ALIGNED else STANDSTILL
         if protocol.mode is Mode.STOPPED:
             return STANDSTILL
@@ -176,7 +177,7 @@ class Leader:
         """Towards the virtual goal through whatever gap there is."""
         body = self._briefing.body
         x, y = guidance.waypoint
-        bearing = wrap_angle(math.atan2(y - pose.y, x - pose.x) - pose.heading)
+        bearing = wrap_angle(elementary.atan2(y - pose.y, x - pose.x) - pose.heading)
         if abs(bearing) > 1.2:
             return turn_towards(bearing, self._gains, body)
         self._steering.look(scan)
@@ -184,8 +185,9 @@ class Leader:
         if choice is None:
             return turn_towards(math.copysign(0.4, bearing), self._gains, body)
         direction, free = choice
-        speed = min(body.leader_speed, max(0.0, free)) * max(0.0, math.cos(direction)) ** 2
-        return Twist(speed, turn_towards(direction, self._gains, body).w)
+        facing = max(0.0, elementary.cos(direction))
+        speed = min(body.leader_speed, max(0.0, free))
+        return Twist(speed * facing * facing, turn_towards(direction, self._gains, body).w)
 
     def _waiting(self, protocol: Protocol, twist: Twist) -> Twist:
         """The same arc, slower while somebody straggles, if the scenario says so."""

@@ -17,6 +17,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, to_local
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import RobotSection
@@ -116,8 +117,9 @@ class Lookout:
         far = scan[middles].astype(np.float64)[:, None] + radius
         most = math.asin(min(1.0, radius / float(far.min())))
         steps = np.arange(-int(most / self._spacing) - 1, int(most / self._spacing) + 2)
-        beside = far * np.sin(steps * self._spacing)
-        hull = far * np.cos(steps * self._spacing)
+        off_middle = np.multiply(steps, self._spacing, dtype=np.float64)
+        beside = far * elementary.sines(off_middle)
+        hull = far * elementary.cosines(off_middle)
         hull -= np.sqrt(np.maximum(0.0, radius * radius - beside * beside))
         place = middles[:, None] + steps
         in_view = (place >= 0) & (place < count)

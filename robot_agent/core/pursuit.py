@@ -11,6 +11,7 @@ import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, to_local
 from robot_agent.core.steering import LOOKAHEAD, Steering
 
@@ -116,10 +117,10 @@ class Pursuit:
         distance = math.hypot(x, y)
         if x < 0.0 or distance > IN_SIGHT:
             return False
-        bearing = math.atan2(y, x)
+        bearing = elementary.atan2(y, x)
         free = self._steering.free_distance(bearing, tight=True)
         return free >= min(distance, LOOKAHEAD) and self._steering.sees(bearing, distance)
 
     def _aimed(self, pose: Pose, point: Point, last: bool, known: bool) -> Aim:
         x, y = to_local(pose, *point)
-        return Aim(math.hypot(x, y), math.atan2(y, x), last, known)
+        return Aim(math.hypot(x, y), elementary.atan2(y, x), last, known)

@@ -12,10 +12,9 @@ of the scenario for followers (gains.reverse), and unprotected.
 Source of the half: reciprocal collision avoidance (van den Berg et al., 2008), here on distances.
 """
 
-import math
-
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Twist
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import RobotSection
@@ -49,7 +48,8 @@ class SafetyFilter:
         near = np.flatnonzero(scan < self.reach)
         ranges = scan[near].astype(np.float64)
         chord = 0.5 * twist.w * self._period
-        ahead = ranges * (self._directions[near] @ (math.cos(chord), math.sin(chord)))
+        along, across = self._directions[near].T
+        ahead = ranges * (along * elementary.cos(chord) + across * elementary.sin(chord))
         gap = ranges - self._radius
         keep = np.where(gap > MARGIN, self._radius + 0.5 * (gap + MARGIN), ranges)
         beside_squared = ranges * ranges - ahead * ahead

@@ -8,6 +8,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts import elementary
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import RobotSection
 
@@ -24,7 +25,9 @@ class Fan:
         half = math.radians(body.laser_fov_deg) / 2.0
         self.range = body.laser_range
         self.angles: FloatArray = np.linspace(-half, half, body.laser_beams)
-        self.directions: FloatArray = np.column_stack((np.cos(self.angles), np.sin(self.angles)))
+        self.directions: FloatArray = np.column_stack(
+            (elementary.cosines(self.angles), elementary.sines(self.angles))
+        )
 
     def hits(self, scan: Ranges) -> FloatArray:
         """Points where beams hit something, (n_hits, 2) float64 [m], robot frame, right to left."""

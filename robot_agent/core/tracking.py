@@ -12,6 +12,7 @@ import math
 from dataclasses import replace
 from typing import NamedTuple
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.sections import GainsSection, RobotSection
 
@@ -45,7 +46,7 @@ def polar_error(pose: Pose, target: Pose) -> PolarError:
     what v = -v in (3.10) amounts to: both forms then use the same law (3.11), (3.12).
     """
     dx, dy = target.x - pose.x, target.y - pose.y
-    alpha = wrap_angle(math.atan2(dy, dx) - pose.heading)
+    alpha = wrap_angle(elementary.atan2(dy, dx) - pose.heading)
     reverse = not -HALF_TURN < alpha <= HALF_TURN
     if reverse:
         alpha = wrap_angle(alpha + math.pi)

@@ -11,6 +11,7 @@ its way pushes the team out backwards, the last robot first, and nobody has to p
 import math
 from collections.abc import Sequence
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, to_map
 
 STEP, POINTS = 1.0, 24
@@ -44,7 +45,7 @@ class Trail:
         """Direction in which the formation looks [rad]: along the trail; the heading where it begins."""
         for x, y in reversed(self.points):
             if math.hypot(pose.x - x, pose.y - y) >= BASE:
-                return math.atan2(pose.y - y, pose.x - x)
+                return elementary.atan2(pose.y - y, pose.x - x)
         return pose.heading
 
 
@@ -60,7 +61,7 @@ def behind(leader: Pose, trail: Sequence[tuple[float, float]], distance: float) 
         step = math.hypot(x - px, y - py)
         if step < 1e-6:
             continue
-        heading = math.atan2(y - py, x - px)
+        heading = elementary.atan2(y - py, x - px)
         if step >= left:
             share = left / step
             return Pose(x + share * (px - x), y + share * (py - y), heading)

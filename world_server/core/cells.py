@@ -45,7 +45,8 @@ def point_gap(x: float, y: float, x0: float, y0: float, x1: float, y1: float) ->
     along = 0.0
     if squared > 0.0:
         along = min(1.0, max(0.0, ((x - x0) * ex + (y - y0) * ey) / squared))
-    return math.hypot(x - x0 - along * ex, y - y0 - along * ey)
+    dx, dy = x - x0 - along * ex, y - y0 - along * ey
+    return math.sqrt(dx * dx + dy * dy)
 
 
 @numba.njit(cache=True)

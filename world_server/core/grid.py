@@ -1,10 +1,10 @@
 """Maps made of square cells: from an array of filled cells to wall segments and an exact ground."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
+from onehop.contracts import elementary
 from world_server.core.walls import BoolArray, FloatArray, WallMap
 
 
@@ -27,7 +27,7 @@ class GridGround:
     def solid(self, points: FloatArray) -> BoolArray:
         """Which points, (n, 2) [m], are in a filled cell or outside the grid, (n,)."""
         frame = self._frame
-        c, s = math.cos(frame.yaw), math.sin(frame.yaw)
+        c, s = elementary.cos(frame.yaw), elementary.sin(frame.yaw)
         x, y = points[:, 0] - frame.x, points[:, 1] - frame.y
         column = np.floor((c * x + s * y) / frame.cell).astype(np.int64) + 1
         row = np.floor((c * y - s * x) / frame.cell).astype(np.int64) + 1
@@ -50,7 +50,7 @@ def grid_map(filled: BoolArray, frame: Frame) -> WallMap:
 
 def _placed(points: FloatArray, frame: Frame) -> FloatArray:
     """Points counted in cells, (n, 2), in the map frame [m]."""
-    c, s = math.cos(frame.yaw), math.sin(frame.yaw)
+    c, s = elementary.cos(frame.yaw), elementary.sin(frame.yaw)
     x, y = points[:, 0] * frame.cell, points[:, 1] * frame.cell
     return np.column_stack((frame.x + c * x - s * y, frame.y + s * x + c * y))
 

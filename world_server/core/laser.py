@@ -16,6 +16,7 @@ import numpy.typing as npt
 
 from onehop.contracts.sections import RobotSection
 from world_server.core.cells import CellList, IntArray, cell_at, cell_list
+from world_server.core.turning import direction
 from world_server.core.walls import FloatArray, WallMap
 
 Scans: TypeAlias = npt.NDArray[np.float32]
@@ -154,7 +155,7 @@ def _scan_all(
     for row in range(len(looking)):
         own = looking[row]
         x, y = poses[own, 0], poses[own, 1]
-        c, s = math.cos(poses[own, 2]), math.sin(poses[own, 2])
+        c, s = direction(poses[own, 2])
         ranges[:] = math.inf
         cell = cell_at(frame, columns, rows, x, y)
         for item in range(first[cell], first[cell + 1]):
@@ -177,7 +178,7 @@ class Laser:
     def __init__(self, walls: WallMap, body: RobotSection) -> None:
         self._half = math.radians(body.laser_fov_deg) / 2.0
         angles = np.linspace(-self._half, self._half, body.laser_beams)
-        self._fan = np.vstack((np.cos(angles), np.sin(angles)))
+        self._fan = np.array([direction(angle) for angle in angles]).T.copy()
         self._range = body.laser_range
         self._radius = body.radius
         self._cells: CellList = cell_list(walls.segments, walls.bounds, body.laser_range)

@@ -21,6 +21,7 @@ import numpy.typing as npt
 from onehop.contracts.geometry import TAU
 from onehop.contracts.sections import RobotSection
 from world_server.core.cells import CellList, cell_at, cell_list, point_gap
+from world_server.core.turning import direction
 from world_server.core.walls import BoolArray, FloatArray, WallMap
 
 WALL = -1
@@ -53,8 +54,10 @@ def _place(pose: FloatArray, v: float, w: float, time: float) -> tuple[float, fl
     turn = 0.5 * w * time
     chord = v * time
     if abs(turn) > 1e-9:
-        chord *= math.sin(turn) / turn
-    return pose[0] + chord * math.cos(pose[2] + turn), pose[1] + chord * math.sin(pose[2] + turn)
+        _, sine = direction(turn)
+        chord *= sine / turn
+    ahead, left = direction(pose[2] + turn)
+    return pose[0] + chord * ahead, pose[1] + chord * left
 
 
 @numba.njit(cache=True)
@@ -93,7 +96,8 @@ def _look_ahead(
             j = group[m]
             if moving[i] or moving[j]:
                 closing = speed + (abs(twists[j, 0]) if moving[j] else 0.0)
-                gap = math.hypot(x - places[j, 0], y - places[j, 1]) - 2.0 * radius
+                dx, dy = x - places[j, 0], y - places[j, 1]
+                gap = math.sqrt(dx * dx + dy * dy) - 2.0 * radius
                 worst, safe = min(worst, gap), min(safe, gap / closing)
     return worst, safe
 
@@ -103,9 +107,9 @@ def _approach(
     i: int, j: int, time: float, poses: FloatArray, twists: FloatArray, places: FloatArray
 ) -> float:
     """How fast robot i itself drives towards robot j at `time`, times their distance."""
-    heading = poses[i, 2] + twists[i, 1] * time
+    ahead, left = direction(poses[i, 2] + twists[i, 1] * time)
     dx, dy = places[j, 0] - places[i, 0], places[j, 1] - places[i, 1]
-    return float(twists[i, 0] * (math.cos(heading) * dx + math.sin(heading) * dy))
+    return float(twists[i, 0] * (ahead * dx + left * dy))
 
 
 @numba.njit(cache=True)
@@ -123,7 +127,8 @@ def _stop_colliding(
             touched[i] = WALL
         for m in range(k):
             j = group[m]
-            apart = math.hypot(places[i, 0] - places[j, 0], places[i, 1] - places[j, 1])
+            dx, dy = places[i, 0] - places[j, 0], places[i, 1] - places[j, 1]
+            apart = math.sqrt(dx * dx + dy * dy)
             if not (moving[i] or moving[j]) or apart - 2.0 * radius >= -_OVERLAP:
                 continue
             by_i = moving[i] and _approach(i, j, hit, poses, twists, places) > 0.0

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario
@@ -66,10 +67,11 @@ def _scatter(
         for _ in range(_DRAWS):
             share, direction, turn = random.random((3, _BATCH))
             distance, angle = radius * np.sqrt(share), math.tau * direction
-            x, y = start.x + distance * np.cos(angle), start.y + distance * np.sin(angle)
+            x = start.x + distance * elementary.cosines(angle)
+            y = start.y + distance * elementary.sines(angle)
             fits = walls.free(np.column_stack((x, y)), inflation)
             for other in poses:
-                fits &= np.hypot(x - other[0], y - other[1]) >= apart
+                fits &= elementary.lengths(x - other[0], y - other[1]) >= apart
             seen = (
                 k
                 for k in np.flatnonzero(fits).tolist()

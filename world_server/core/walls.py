@@ -11,6 +11,8 @@ from typing import Protocol, TypeAlias
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts import elementary
+
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 BoolArray: TypeAlias = npt.NDArray[np.bool_]
 Bounds: TypeAlias = tuple[float, float, float, float]
@@ -81,8 +83,8 @@ class WallMap:
         ring = 0.0
         while ring <= farthest:
             count = min(_RING_POINTS, max(1, math.ceil(math.tau * ring / _RING_STEP)))
-            angles = np.arange(count) * (math.tau / count)
-            offsets = ring * np.column_stack((np.cos(angles), np.sin(angles)))
+            angles = np.arange(count, dtype=np.float64) * (math.tau / count)
+            offsets = ring * np.column_stack((elementary.cosines(angles), elementary.sines(angles)))
             points = np.round(np.array([x, y]) + offsets, 2)
             fits = np.flatnonzero(self.free(points, radius))
             if len(fits):
@@ -94,11 +96,12 @@ class WallMap:
 def segment_distances(points: FloatArray, segments: FloatArray) -> FloatArray:
     """Distance from each point, (n, 2), to each segment, (m, 4), as (n, m) [m]."""
     start, run = segments[:, :2], segments[:, 2:] - segments[:, :2]
-    squared = np.einsum("ij,ij->i", run, run)
+    squared = run[:, 0] * run[:, 0] + run[:, 1] * run[:, 1]
     offset = points[:, None, :] - start[None, :, :]
-    along = np.einsum("nmi,mi->nm", offset, run) / np.where(squared > 0.0, squared, 1.0)
+    reach = offset[:, :, 0] * run[:, 0] + offset[:, :, 1] * run[:, 1]
+    along = reach / np.where(squared > 0.0, squared, 1.0)
     nearest = offset - np.clip(along, 0.0, 1.0)[:, :, None] * run
-    distances: FloatArray = np.hypot(nearest[:, :, 0], nearest[:, :, 1])
+    distances: FloatArray = elementary.lengths(nearest[:, :, 0], nearest[:, :, 1])
     return distances
 
 

@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from onehop.contracts import elementary
 from robot_agent.core.planning.view import View
 from robot_agent.core.scan import FloatArray
 
@@ -34,16 +35,18 @@ def trace(view: View, start: FloatArray, radius: float, side: int) -> FloatArray
     if math.dist(centre, start) > radius:
         return np.empty((0, 2))
     traced = [centre]
-    angle = math.atan2(*(centre - points[contact])[::-1])
+    angle = elementary.atan2(*(centre - points[contact])[::-1])
     before = contact
     for _ in range(MOST_PIVOTS):
         turn, following = _pivot(points, contact, before, angle, radius, side)
         steps = max(1, math.ceil(turn / ARC_STEP))
         arc = angle + side * turn * np.arange(1, steps + 1) / steps
-        traced += list(points[contact] + radius * np.column_stack((np.cos(arc), np.sin(arc))))
+        traced += list(
+            points[contact] + radius * np.column_stack((elementary.cosines(arc), elementary.sines(arc)))
+        )
         if following == contact or math.dist(traced[-1], view.origin) > view.fan.range:
             break
-        angle = math.atan2(*(traced[-1] - points[following])[::-1])
+        angle = elementary.atan2(*(traced[-1] - points[following])[::-1])
         before, contact = contact, following
     return _known(view, np.array(traced), radius)
 
@@ -53,7 +56,7 @@ def settle(points: FloatArray, start: FloatArray, radius: float) -> tuple[FloatA
     centre, contact = start.copy(), 0
     for _ in range(8):
         offset = centre - points
-        distance = np.hypot(offset[:, 0], offset[:, 1])
+        distance = elementary.lengths(offset[:, 0], offset[:, 1])
         contact = int(np.argmin(distance))
         if abs(distance[contact] - radius) < 1e-6:
             break
@@ -70,12 +73,14 @@ def _pivot(
     before: the contact that it comes from. With no other point in reach it goes once around the contact.
     """
     offset = points - points[contact]
-    distance = np.hypot(offset[:, 0], offset[:, 1])
+    distance = elementary.lengths(offset[:, 0], offset[:, 1])
     near = np.flatnonzero((distance < 2.0 * radius) & (distance > 1e-6))
     if not len(near):
         return 2.0 * math.pi, contact
-    bearing = np.arctan2(offset[near, 1], offset[near, 0])
-    meets = bearing - side * np.arccos(distance[near] / (2.0 * radius))
+    bearing = elementary.directions(offset[near, 1], offset[near, 0])
+    half = 0.5 * distance[near]
+    opening = elementary.directions(np.sqrt(radius * radius - half * half), half)
+    meets = bearing - side * opening
     turn = (side * (meets - angle)) % (2.0 * math.pi)
     turn[(turn > 2.0 * math.pi - ROUNDING) & (near != before)] = 0.0
     best = int(np.lexsort((-distance[near], turn))[0])

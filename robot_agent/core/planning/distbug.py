@@ -17,6 +17,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from onehop.contracts import elementary
 from robot_agent.core.planning.boundary import settle, trace
 from robot_agent.core.planning.roadmap import RoadMap
 from robot_agent.core.planning.view import View
@@ -88,7 +89,7 @@ class DistBug:
         Only in the nearer half of the view: further out a wall that the beams graze is seen by so few
         hits that places on it look free.
         """
-        left = np.hypot(*(roadmap.points - self.goal).T)
+        left = elementary.lengths(*(roadmap.points - self.goal).T)
         meets = (left < self.least - self.step) & (costs < 0.5 * view.fan.range)
         total = np.where(meets, costs + left, np.inf)
         best = int(np.argmin(total))
@@ -96,7 +97,7 @@ class DistBug:
 
     def _hit(self, view: View) -> FloatArray | None:
         """The robot came to an obstacle: choose the side whose known boundary leads closer."""
-        towards = math.atan2(self.goal[1] - view.origin[1], self.goal[0] - view.origin[0])
+        towards = elementary.atan2(self.goal[1] - view.origin[1], self.goal[0] - view.origin[0])
         if abs(math.remainder(towards - view.pose.heading, 2.0 * math.pi)) > 0.8 and self.looks == 0:
             self.looks += 1
             self.turn = towards
@@ -120,20 +121,24 @@ class DistBug:
     def _contact(self, view: View, towards: float) -> FloatArray:
         """Where a disc that rolls straight towards the goal first touches something."""
         distance = np.arange(0.0, view.fan.range, 0.1 * self.radius)
-        line = view.origin + distance[:, None] * np.array((math.cos(towards), math.sin(towards)))
+        line = view.origin + distance[:, None] * np.array(
+            (elementary.cos(towards), elementary.sin(towards))
+        )
         blocked = np.flatnonzero(view.free(line, self.radius)[1] < self.radius)
         first = line[max(int(blocked[0]) - 1, 0)] if len(blocked) else view.origin
         return settle(view.obstacles, first, self.radius)[0] if len(view.obstacles) else first
 
     def _advance(self, view: View, circuit: Circuit) -> None:
         """Move the anchor to the boundary place nearest to the robot; see if the loop closed."""
-        nearest = int(np.argmin(np.hypot(*(circuit.ahead - view.origin).T)))
+        nearest = int(np.argmin(elementary.lengths(*(circuit.ahead - view.origin).T)))
         passed = circuit.ahead[: nearest + 1]
         circuit.ahead = circuit.ahead[nearest:]
-        self.least = min(self.least, float(np.hypot(*(passed - self.goal).T).min()))
+        self.least = min(self.least, float(elementary.lengths(*(passed - self.goal).T).min()))
         for a, b in itertools.pairwise(passed):
             circuit.length += math.dist(a, b)
-            again = math.dist(b, circuit.hit) < 0.6 * self.radius and (b - a) @ circuit.course > 0.0
+            again = math.dist(b, circuit.hit) < 0.6 * self.radius and bool(
+                ((b - a) * circuit.course).sum() > 0.0
+            )
             if again and circuit.length > 6.0 * self.radius:
                 self.enclosed = True
 
@@ -164,4 +169,4 @@ class DistBug:
 
 
 def _length(way: FloatArray) -> float:
-    return float(np.hypot(*np.diff(way, axis=0).T).sum()) if len(way) > 1 else 0.0
+    return float(elementary.lengths(*np.diff(way, axis=0).T).sum()) if len(way) > 1 else 0.0

@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, Twist, wrap_angle
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import RobotSection
@@ -70,7 +71,7 @@ class Driver:
         distance = math.hypot(dx, dy)
         if distance < 1e-6:
             return Twist(0.0, 0.0)
-        bearing = wrap_angle(math.atan2(dy, dx) - pose.heading)
+        bearing = wrap_angle(elementary.atan2(dy, dx) - pose.heading)
         size = abs(bearing)
         if size > TURN_IN_PLACE_ABOVE or (self.turning and size > FULL_SPEED_BELOW):
             return self._turn(bearing)
@@ -78,7 +79,7 @@ class Driver:
         speed = min(self.body.leader_speed, distance / self.period)
         if size > FULL_SPEED_BELOW:
             speed *= (TURN_IN_PLACE_ABOVE - size) / (TURN_IN_PLACE_ABOVE - FULL_SPEED_BELOW)
-        w = speed * 2.0 * math.sin(bearing) / max(distance, 0.1)
+        w = speed * 2.0 * elementary.sin(bearing) / max(distance, 0.1)
         limit = self.body.max_turn_rate
         if abs(w) > limit:
             speed *= limit / abs(w)
@@ -109,7 +110,9 @@ class Driver:
         seen = np.flatnonzero(scan <= self._caution)
         points = self.fan.directions[seen] * scan[seen, None]
         step, turn = twist.v * self.period, 0.5 * twist.w * self.period
-        next_room = np.hypot(points[:, 0] - step * math.cos(turn), points[:, 1] - step * math.sin(turn))
+        next_room = elementary.lengths(
+            points[:, 0] - step * elementary.cos(turn), points[:, 1] - step * elementary.sin(turn)
+        )
         ahead = bool((scan < self._stop_ranges).any())
         if not ahead and next_room.min() >= min(self.clearance, nearest):
             self.shielded = 0
@@ -149,6 +152,8 @@ class Driver:
 def _corridor(angles: FloatArray, half_width: float, depth: float) -> FloatArray:
     """Range at which each beam leaves a rectangle straight ahead, (n_beams,) [m]; 0 outside of +-90."""
     with np.errstate(divide="ignore"):
-        ahead = np.where(np.cos(angles) > 0.05, depth / np.maximum(np.cos(angles), 0.05), 0.0)
-        aside = half_width / np.maximum(np.abs(np.sin(angles)), 1e-9)
+        ahead = np.where(
+            elementary.cosines(angles) > 0.05, depth / np.maximum(elementary.cosines(angles), 0.05), 0.0
+        )
+        aside = half_width / np.maximum(np.abs(elementary.sines(angles)), 1e-9)
     return np.asarray(np.minimum(ahead, aside))

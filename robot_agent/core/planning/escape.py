@@ -13,6 +13,7 @@ from enum import Enum
 
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Note, Ranges
 from onehop.contracts.scenario import Briefing
@@ -187,7 +188,7 @@ class Escape:
             self._face(float(self.openings.gaze[chain[0]]))
             return True
         x, y = xy[ahead[-1]].tolist()
-        bearing = math.atan2(y - pose.y, x - pose.x)
+        bearing = elementary.atan2(y - pose.y, x - pose.x)
         if abs(wrap_angle(bearing - pose.heading)) > 1.2:
             self._face(bearing)
             return True

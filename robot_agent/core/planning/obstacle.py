@@ -11,6 +11,7 @@ from enum import Enum
 
 import numpy as np
 
+from onehop.contracts import elementary
 from robot_agent.core.planning.view import BoolArray, View
 from robot_agent.core.scan import FloatArray
 
@@ -83,8 +84,8 @@ def _along(wall: FloatArray, heading: float) -> float:
     """Direction of the line through hits of a wall, the one of the two that is closer to the heading."""
     spread = wall - wall.mean(axis=0)
     sxx, syy = float((spread[:, 0] ** 2).sum()), float((spread[:, 1] ** 2).sum())
-    direction = 0.5 * math.atan2(2.0 * float((spread[:, 0] * spread[:, 1]).sum()), sxx - syy)
-    return direction if math.cos(direction - heading) >= 0.0 else direction + math.pi
+    direction = 0.5 * elementary.atan2(2.0 * float((spread[:, 0] * spread[:, 1]).sum()), sxx - syy)
+    return direction if elementary.cos(direction - heading) >= 0.0 else direction + math.pi
 
 
 def _middle(view: View, within: float) -> float:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, wrap_angle
 from robot_agent.core.planning.memory import CLOSED, NOTHING, OPENING, PLACE, WayPoints
 from robot_agent.core.planning.roadmap import RoadMap
@@ -98,13 +99,13 @@ class Openings:
         """
         rim, outward = unseen_rim(view, 2.0 * self.inflation, self.goal, record)
         near_rim = squared_distances(roadmap.points, rim)
-        beside = near_rim.min(axis=1, initial=np.inf) < self.rim**2
+        beside = near_rim.min(axis=1, initial=np.inf) < self.rim * self.rim
         candidates = np.flatnonzero(np.isfinite(costs) & beside)
         candidates = candidates[candidates > 0]
         outward = outward[near_rim.argmin(axis=1)] if len(rim) else np.zeros(len(roadmap.points))
         self._refute(view, rim, known, (roadmap.points[candidates], outward[candidates]))
         candidates = candidates[self._worth(roadmap.points[candidates], record)]
-        value = costs[candidates] + np.hypot(*(roadmap.points[candidates] - self.goal).T)
+        value = costs[candidates] + elementary.lengths(*(roadmap.points[candidates] - self.goal).T)
         offset = math.dist(view.origin, self.memory.xy[self.place])
         decided: list[int] = []
         for point in candidates[np.argsort(value, kind="stable")].tolist():
@@ -132,12 +133,13 @@ class Openings:
             )
             for kind in (PLACE, OPENING, CLOSED)
         }
-        new = (nearest[PLACE] >= self.spacing**2) & (nearest[CLOSED] >= 0.25 * self.spacing**2)
-        return np.asarray((nearest[OPENING] >= self.spacing**2) & (new | self._closer(points, record)))
+        apart = self.spacing * self.spacing
+        new = (nearest[PLACE] >= apart) & (nearest[CLOSED] >= 0.25 * apart)
+        return np.asarray((nearest[OPENING] >= apart) & (new | self._closer(points, record)))
 
     def _closer(self, points: FloatArray, record: float) -> BoolArray:
         """Which (n, 2) points are closer to the goal than the robot ever was, by a step."""
-        return np.asarray(np.hypot(*(points - self.goal).T) < record - self.inflation)
+        return np.asarray(elementary.lengths(*(points - self.goal).T) < record - self.inflation)
 
     def _seen_before(self, view: View, point: FloatArray) -> bool:
         """Did the robot look at this place from near by before? Then it was judged there and then.
@@ -146,8 +148,11 @@ class Openings:
         """
         places = self.memory.of_kind(PLACE)
         offset = point - self.memory.xy[places]
-        near = np.hypot(*offset.T) < 0.6 * view.fan.range
-        before = np.cos(np.arctan2(offset[:, 1], offset[:, 0]) - self.gaze[places]) > 0.1
+        near = elementary.lengths(*offset.T) < 0.6 * view.fan.range
+        before = (
+            elementary.cosines(elementary.directions(offset[:, 1], offset[:, 0]) - self.gaze[places])
+            > 0.1
+        )
         places = places[near & before & (places != self.place)]
         if not len(places):
             return False
@@ -160,10 +165,12 @@ class Openings:
         """
         openings = np.array([n for n in known if self.memory.kind[n] == OPENING], dtype=np.intp)
         points = self.memory.xy[openings]
-        beside_unseen = squared_distances(points, rim).min(axis=1, initial=np.inf) < self.rim**2
+        beside_unseen = squared_distances(points, rim).min(axis=1, initial=np.inf) < self.rim * self.rim
         still = beside_unseen & view.free(points, self.inflation)[0]
         turn = self.gaze[openings] - view.pose.heading
-        behind = (np.cos(turn) < 0.36) & (np.hypot(*(points - view.origin).T) < 1.5 * self.spacing)
+        behind = (elementary.cosines(turn) < 0.36) & (
+            elementary.lengths(*(points - view.origin).T) < 1.5 * self.spacing
+        )
         done = openings[~still & ~behind].tolist()
         for number in done + [n for n in self._entered(view.pose) if n not in done]:
             if not self._move_on(view, number, edge):
@@ -172,8 +179,8 @@ class Openings:
     def _entered(self, pose: Pose) -> list[int]:
         """Openings that the robot stands in with their unseen side in view."""
         openings = self.memory.of_kind(OPENING)
-        near = np.hypot(*(self.memory.xy[openings] - (pose.x, pose.y)).T) < 0.4 * self.spacing
-        ahead = np.cos(self.gaze[openings] - pose.heading) > 0.5
+        near = elementary.lengths(*(self.memory.xy[openings] - (pose.x, pose.y)).T) < 0.4 * self.spacing
+        ahead = elementary.cosines(self.gaze[openings] - pose.heading) > 0.5
         return [int(n) for n in openings[near & ahead]]
 
     def _move_on(self, view: View, number: int, edge: Edge) -> bool:
@@ -181,8 +188,8 @@ class Openings:
         points, outward = edge
         if not len(points) or self.moves[number] >= MOST_MOVES:
             return False
-        distance = np.hypot(*(points - self.memory.xy[number]).T)
-        distance[np.hypot(*(points - view.origin).T) < 0.5 * self.spacing] = np.inf
+        distance = elementary.lengths(*(points - self.memory.xy[number]).T)
+        distance[elementary.lengths(*(points - view.origin).T) < 0.5 * self.spacing] = np.inf
         nearest = int(np.argmin(distance))
         if distance[nearest] > 1.5 * self.spacing:
             return False
@@ -244,7 +251,7 @@ def unseen_rim(view: View, gap: float, goal: FloatArray, record: float) -> tuple
     heading = view.fan.angles + view.pose.heading
     ends = view.origin + view.directions * sight[:, None]
     beside = np.convolve(~view.open_beams, np.ones(13), mode="same") > 0
-    closer = np.hypot(*(ends - goal).T) < record
+    closer = elementary.lengths(*(ends - goal).T) < record
     closer[1::4] = closer[2::4] = closer[3::4] = False
     far = np.flatnonzero(view.open_beams & (beside | closer))
     points = [ends[far]]

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 
+from onehop.contracts import elementary
 from robot_agent.core.planning.view import View
 
 SLICE = 1.0
@@ -20,7 +21,7 @@ def passage_width(view: View, ahead: float) -> float:
     obstacle to its left and to its right; a slice with an open side, or one that is blocked straight
     ahead (that is a wall across, not a passage), has none.
     """
-    c, s = math.cos(view.pose.heading), math.sin(view.pose.heading)
+    c, s = elementary.cos(view.pose.heading), elementary.sin(view.pose.heading)
     rest = view.obstacles - view.origin
     forward, left = c * rest[:, 0] + s * rest[:, 1], c * rest[:, 1] - s * rest[:, 0]
     halves = int(2.0 * ahead / SLICE) + 1

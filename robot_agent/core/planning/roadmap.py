@@ -10,6 +10,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts import elementary
 from robot_agent.core.planning.view import BoolArray, View, squared_distances
 from robot_agent.core.scan import FloatArray
 
@@ -41,7 +42,7 @@ def sample_fan(view: View, draws: FloatArray, centre: float, half: float, margin
     reach = np.minimum(view.sight[beam], view.fan.range - margin)
     radius = reach * np.sqrt(draws[:, 1]) * 0.98
     heading = bearing + view.pose.heading
-    directions = np.column_stack((np.cos(heading), np.sin(heading)))
+    directions = np.column_stack((elementary.cosines(heading), elementary.sines(heading)))
     return np.asarray(view.origin + directions * radius[:, None])
 
 
@@ -122,7 +123,7 @@ class RoadMap:
         """
         start, end = self.points[a], self.points[b]
         offset = end - start
-        length = np.sqrt(offset[:, 0] ** 2 + offset[:, 1] ** 2)
+        length = elementary.lengths(offset[:, 0], offset[:, 1])
         wide: BoolArray = self.room[a] + self.room[b] - 2.0 * self.comfort >= length
         clear = wide.copy()
         rest = np.flatnonzero(~wide)
@@ -175,7 +176,7 @@ class RoadMap:
         if goal == 0:
             return [0]
         offset = self.points - self.points[goal]
-        rest = np.sqrt(offset[:, 0] ** 2 + offset[:, 1] ** 2)
+        rest = elementary.lengths(offset[:, 0], offset[:, 1])
         first = (self.direct + rest < min(self.direct[goal] + 1e-9, math.inf)).nonzero()[0]
         guess, cost = rest.tolist(), dict(zip(first.tolist(), self.direct[first].tolist(), strict=True))
         origin = dict.fromkeys(cost, 0)

@@ -14,6 +14,7 @@ import math
 
 import numpy as np
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Note, Ranges
 from onehop.contracts.scenario import Briefing
@@ -83,7 +84,7 @@ class Stepwise:
         return math.dist((pose.x, pose.y), self.waypoint) < near or self.driver.shielded > 40
 
     def _to_goal(self, pose: Pose) -> float:
-        return math.atan2(self.goal[1] - pose.y, self.goal[0] - pose.x)
+        return elementary.atan2(self.goal[1] - pose.y, self.goal[0] - pose.x)
 
     def _face(self, heading: float) -> None:
         self.facing = wrap_angle(heading)
@@ -126,9 +127,10 @@ class Stepwise:
             way = roadmap.path(int(at_goal[0]))
         elif len(good):
             if direction is None:
-                worth = -np.hypot(*(roadmap.points[good] - self.goal).T)
+                worth = -elementary.lengths(*(roadmap.points[good] - self.goal).T)
             else:
-                worth = offset[good] @ np.array((math.cos(direction), math.sin(direction)))
+                ahead, left = elementary.cos(direction), elementary.sin(direction)
+                worth = offset[good, 0] * ahead + offset[good, 1] * left
             way = roadmap.path(int(good[np.argmax(worth)]))
         if way is None:
             self._step_back(pose, roadmap, samples)
@@ -143,7 +145,7 @@ class Stepwise:
         where one was before.
         """
         taken = points[:1] if self.limited else self.used
-        return np.asarray(squared_distances(points, taken).min(axis=1) > self.inflation**2)
+        return np.asarray(squared_distances(points, taken).min(axis=1) > self.inflation * self.inflation)
 
     def _step_back(self, pose: Pose, roadmap: RoadMap, samples: FloatArray) -> None:
         """Back to the virtual goal before (listing, 2a); at the start there is nowhere left to go."""

@@ -10,6 +10,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Ranges
 from robot_agent.core.scan import Fan, FloatArray
@@ -51,9 +52,11 @@ class View:
         if moving:
             solid[sorted(moving)] = False
         self.solid: BoolArray = solid
-        c, s = math.cos(pose.heading), math.sin(pose.heading)
+        c, s = elementary.cos(pose.heading), elementary.sin(pose.heading)
         d = fan.directions
-        self.directions: FloatArray = d @ np.array(((c, s), (-s, c)))
+        self.directions: FloatArray = np.column_stack(
+            (c * d[:, 0] - s * d[:, 1], s * d[:, 0] + c * d[:, 1])
+        )
         hits = self.origin + self.directions[solid] * self.sight[solid, None]
         self.obstacles: FloatArray = np.concatenate((_outline(hits, grain), beside))
         self._shown_to = _shown_to(self.sight)
@@ -63,11 +66,11 @@ class View:
     def polar(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Bearing [rad, relative to the heading, in (-pi, pi]] and distance [m] of (n, 2) points."""
         ahead, left = self.local(points)
-        return np.arctan2(left, ahead), np.sqrt(ahead * ahead + left * left)
+        return elementary.directions(left, ahead), elementary.lengths(ahead, left)
 
     def local(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """How far (n, 2) points lie ahead and to the left of the robot, (n,) each [m]."""
-        c, s = math.cos(self.pose.heading), math.sin(self.pose.heading)
+        c, s = elementary.cos(self.pose.heading), elementary.sin(self.pose.heading)
         dx, dy = points[:, 0] - self.pose.x, points[:, 1] - self.pose.y
         return c * dx + s * dy, c * dy - s * dx
 
@@ -78,7 +81,7 @@ class View:
     def shows(self, ahead: FloatArray, left: FloatArray) -> BoolArray:
         """The same for places ahead and to the left of the robot, any shape [m]."""
         first, last = self.fan.angles[0], self.fan.angles[-1]
-        place = np.arctan2(left, ahead)
+        place = np.arctan2(left, ahead)  # becomes a whole number: its last bits do not count
         place -= first
         place *= (len(self.fan.angles) - 1) / (last - first)
         place += 1.0 + 1e-6
@@ -91,7 +94,7 @@ class View:
         """
         bearing, distance = self.polar(points)
         inside = np.clip(self.fan.angles[-1] - np.abs(bearing), 0.0, math.pi / 2)
-        return np.asarray((distance * np.sin(inside) >= margin) | (distance < 4.0 * margin))
+        return np.asarray((distance * elementary.sines(inside) >= margin) | (distance < 4.0 * margin))
 
     def allowance(self, clearance: float) -> Float32Array:
         """Least distance to keep from each obstacle, squared, (n,) [m2].
@@ -99,7 +102,7 @@ class View:
         It is `clearance`, but never more than the robot has now: who starts inside an inflated
         obstacle may move out of it, not further in.
         """
-        return np.asarray(np.minimum(np.float32(clearance**2), self._kept))
+        return np.asarray(np.minimum(np.float32(clearance * clearance), self._kept))
 
     def free(self, points: FloatArray, clearance: float) -> tuple[BoolArray, FloatArray]:
         """Which (n, 2) points keep `clearance` (or the allowance), and the room of each, (n,) [m]."""
@@ -133,15 +136,15 @@ class Afterimage:
     def beside(self, pose: Pose, half_view: float) -> FloatArray:
         """The remembered points that the laser cannot see from `pose`, (n, 2) [m]."""
         dx, dy = self.points[:, 0] - pose.x, self.points[:, 1] - pose.y
-        bearing = np.arctan2(dy, dx) - pose.heading
-        hidden = np.cos(bearing) < math.cos(half_view - 0.02)
-        return self.points[hidden & (dx * dx + dy * dy < self.reach**2)]
+        bearing = elementary.directions(dy, dx) - pose.heading
+        hidden = elementary.cosines(bearing) < elementary.cos(half_view - 0.02)
+        return self.points[hidden & (dx * dx + dy * dy < self.reach * self.reach)]
 
     def keep(self, view: View) -> None:
         """Remember the obstacles of this view that are within reach, the nearest first."""
         points = view.obstacles
         distance2 = squared_distances(view.origin[None], points)[0]
-        near = np.flatnonzero(distance2 < (1.5 * self.reach) ** 2)
+        near = np.flatnonzero(distance2 < 2.25 * self.reach * self.reach)
         order = near[np.argsort(distance2[near], kind="stable")]
         self.points = points[order[: self.capacity]]
 
@@ -165,7 +168,7 @@ def _outline(hits: FloatArray, grain: float) -> FloatArray:
     if len(hits) < 3:
         return hits
     leg = hits[1:] - hits[:-1]
-    step = np.sqrt(leg[:, 0] ** 2 + leg[:, 1] ** 2)
+    step = elementary.lengths(leg[:, 0], leg[:, 1])
     cell = np.floor(np.cumsum(np.minimum(step, grain)) / grain)
     keep = np.ones(len(hits), dtype=np.bool_)
     keep[1] = cell[0] > 0.0
