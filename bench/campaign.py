@@ -3,9 +3,9 @@
     python bench/campaign.py --seeds 100 --lines runs/quiet.jsonl
     python bench/campaign.py --seeds 20 --faults --lines runs/faults.jsonl
 
-One process, the inline driver, nothing recorded. Every mission adds a line to the file as it ends; the
-program started again with the same file goes on where it was stopped. Delete the file after a change of
-the rules: a line belongs to the program that wrote it.
+One process, the inline driver, nothing recorded. With --lines every mission adds a line to the file as
+it ends, and the program started again with the same file goes on where it was stopped. Delete the file
+after a change of the rules: a line belongs to the program that wrote it.
 
 With --faults each seed draws its own: one robot killed, one killed and started again, a cut of the team
 into two parts, and one robot held still, each at a random time of the first 150 s.
@@ -13,6 +13,7 @@ into two parts, and one robot held still, each at a random time of the first 150
 
 import argparse
 import json
+import os
 import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -111,10 +112,10 @@ def summary(lines: list[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]
 def main() -> None:
     """Run what the file lacks, print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=100)
+    parser.add_argument("--seeds", type=int, default=2)
     parser.add_argument("--maps", type=int, nargs="+", default=list(MAPS))
     parser.add_argument("--faults", action="store_true")
-    parser.add_argument("--lines", type=Path, required=True, help="one JSON line a mission")
+    parser.add_argument("--lines", type=Path, default=os.devnull, help="one JSON line a mission")
     options = parser.parse_args()
     options.lines.parent.mkdir(parents=True, exist_ok=True)
     known = options.lines.read_text().splitlines() if options.lines.exists() else []

@@ -16,6 +16,7 @@ as in the thesis (chapter 4). Per policy, medians over the seeds of
 import argparse
 import itertools
 import json
+import os
 import statistics
 from pathlib import Path
 from typing import Any
@@ -58,10 +59,11 @@ class Course:
             self.regained_s = now - DELAY_AT - DELAY
 
 
-def mission(number: int, seed: int, policy: str) -> dict[str, float]:
+def mission(number: int, seed: int, policy: str, k_rho_min: float) -> dict[str, float]:
     """One mission."""
     hold = f'{{kind="hold", at_s={DELAY_AT}, robots=[1, 2, 4, 5, 6], duration_s={DELAY}}}'
     settings = [f"seed={seed}", f'gains.policy="{policy}"', f"faults=[{hold}]"]
+    settings.append(f"gains.k_rho_min={k_rho_min}")
     bundle = scenario_file.load(SCENARIOS / f"map{number}.toml", settings)
     course = Course()
     outcome = inline.run(bundle, None, course.watch)
@@ -81,20 +83,23 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--map", type=int, default=1)
-    parser.add_argument("--lines", type=Path, required=True, help="one JSON line a mission")
+    parser.add_argument("--k-rho-min", type=float, default=1.0, help="low gain [1/s]")
+    parser.add_argument("--lines", type=Path, default=os.devnull, help="one JSON line a mission")
     options = parser.parse_args()
     options.lines.parent.mkdir(parents=True, exist_ok=True)
     known = options.lines.read_text().splitlines() if options.lines.exists() else []
     done = {tuple(key): run for key, run in map(json.loads, known)}
-    wanted = itertools.product([options.map], range(1, options.seeds + 1), POLICIES)
+    wanted = itertools.product([options.map], range(1, options.seeds + 1), POLICIES, [options.k_rho_min])
     with options.lines.open("a") as file:
         for key in wanted:
             if key not in done:
                 done[key] = mission(*key)
                 print(json.dumps((key, done[key])), file=file, flush=True)
-    table: dict[str, Any] = {"map": options.map, "seeds": options.seeds}
+    table: dict[str, Any] = {"map": options.map, "seeds": options.seeds, "k_rho_min": options.k_rho_min}
     for policy in POLICIES:
-        runs = [done[options.map, seed, policy] for seed in range(1, options.seeds + 1)]
+        runs = [
+            done[options.map, seed, policy, options.k_rho_min] for seed in range(1, options.seeds + 1)
+        ]
         row = {key: round(statistics.median(run[key] for run in runs), 3) for key in runs[0]}
         table[policy] = {**row, "lost": sum(run["lost"] for run in runs)}
     print(json.dumps(table, indent=1))
