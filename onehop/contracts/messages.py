@@ -232,7 +232,8 @@ class Verdict(Value, frozen=True):
 class Ether(Wire, frozen=True):
     """What happened on the air in the tick that ends at time_ns (key ether).
 
-    control_bytes: routing bytes sent since the start of the mission, by kind ("rreq", "rrep", ...).
+    control_bytes: routing bytes sent since the start of the mission, by kind ("rreq", "rrep", "rerr",
+        and "source_route" for what MRSR adds to data).
     """
 
     tick: int

@@ -6,7 +6,7 @@ from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.scenario import Scenario, robot_briefing
 from onehop.contracts.sections import GainsSection, GoalSection, MapSection, TeamSection
 from robot_agent.core.gains import make_policy
-from robot_agent.core.robot import threshold_bps
+from robot_agent.core.robot import required_throughput_bps
 
 THRESHOLD = 0.5333e6  # thesis 3.8.3
 
@@ -61,7 +61,7 @@ def test_the_ideal_threshold_follows_rate_and_size_of_next():
             gains=GainsSection(threshold=threshold),
             radio=RadioSection(rate_mbps=rate_mbps),
         )
-        return threshold_bps(robot_briefing(scenario, 1, 0))
+        return required_throughput_bps(robot_briefing(scenario, 1, 0))
 
     assert threshold() == pytest.approx(THRESHOLD, rel=1e-3)
     assert threshold(rate_mbps=11.0) > 3.0 * THRESHOLD
