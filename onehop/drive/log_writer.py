@@ -71,6 +71,7 @@ class LogWriter:
 
     def close(self, summary: Mapping[str, Any] | None) -> None:
         """Finish the file; summary is what `onehop run` will print, None if there is none."""
+        self.flush()  # the writer holds messages back, and the outcome must not overtake them
         if summary is not None:
             self._writer.add_metadata("outcome", {"summary": json.dumps(summary, sort_keys=True)})
         self._writer.finish()  # type: ignore[no-untyped-call]
