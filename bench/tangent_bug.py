@@ -84,15 +84,15 @@ def _best_end(
 
 
 @numba.njit(cache=True)
-def _nearest_seen(sight: FloatArray, x: float, y: float, gx: float, gy: float) -> float:
-    least = np.inf
+def _nearest_seen(sight: FloatArray, x: float, y: float, gx: float, gy: float) -> tuple[float, int]:
+    """Distance to the goal of the nearest place in sight, and the ray that it ends."""
+    least, best = np.inf, 0
     for ray in range(RAYS):
         angle = 2 * math.pi * ray / RAYS
-        least = min(
-            least,
-            math.hypot(x + sight[ray] * math.cos(angle) - gx, y + sight[ray] * math.sin(angle) - gy),
-        )
-    return least
+        left = math.hypot(x + sight[ray] * math.cos(angle) - gx, y + sight[ray] * math.sin(angle) - gy)
+        if left < least:
+            least, best = left, ray
+    return least, best
 
 
 @numba.njit(cache=True)
@@ -110,11 +110,19 @@ def _next_heading(
 
 @numba.njit(cache=True)
 def _follow(
-    free: BoolArray, x: float, y: float, gx: float, gy: float, reach: float, side: int, around: IntArray
-) -> tuple[float, float, float, float]:
-    """From the wall ahead along it, until something closer to the goal than all of it is in sight.
+    free: BoolArray,
+    x: float,
+    y: float,
+    gx: float,
+    gy: float,
+    reach: float,
+    side: int,
+    least: float,
+    around: IntArray,
+) -> tuple[float, float, float]:
+    """From the wall ahead along it, until a place closer to the goal than ever is in sight, and there.
 
-    Place, length, and least distance to the goal; the length is infinite when the loop closes without.
+    Place and length; the length is infinite when the loop closes without. least: distance to beat.
     Lengths are chords over CHORD steps, because steps to eight neighbours would make slanting walls
     longer than they are.
     """
@@ -123,8 +131,9 @@ def _follow(
     while free[round(y + 0.5 * s), round(x + 0.5 * c)]:
         x, y, length = x + 0.5 * c, y + 0.5 * s, length + 0.5
     column, row = round(x), round(y)
-    followed = math.hypot(column - gx, row - gy)
-    heading = (round(direction / (math.pi / 4)) - 2 * side) % 8
+    followed = min(least, math.hypot(column - gx, row - gy))
+    wall = math.atan2(round(y + 0.5 * s) - row, round(x + 0.5 * c) - column)
+    heading = (round(wall / (math.pi / 4)) - 2 * side) % 8
     first_column, first_row, first_heading = column, row, -1
     last_column, last_row = column, row
     for moved in range(LONGEST):
@@ -140,9 +149,12 @@ def _follow(
             length += math.hypot(column - last_column, row - last_row)
             last_column, last_row = column, row
             sight = _look(free, float(column), float(row), reach)
-            if _nearest_seen(sight, float(column), float(row), gx, gy) < followed - 1.0:
-                return float(column), float(row), length, followed
-    return float(column), float(row), np.inf, followed
+            left, ray = _nearest_seen(sight, float(column), float(row), gx, gy)
+            if left < followed - 1.0:
+                angle = 2 * math.pi * ray / RAYS
+                x, y = column + sight[ray] * math.cos(angle), row + sight[ray] * math.sin(angle)
+                return x, y, length + sight[ray]
+    return float(column), float(row), np.inf
 
 
 @numba.njit(cache=True)
@@ -164,7 +176,8 @@ def _way(
             continue
         cross = math.cos(angle) * (gy - y) - math.sin(angle) * (gx - x)
         side = -1 if cross > 0 else 1
-        x, y, further, least = _follow(free, x, y, gx, gy, reach, side, around)
+        x, y, further = _follow(free, x, y, gx, gy, reach, side, least, around)
+        least = min(least, math.hypot(x - gx, y - gy))
         length += further
         if math.isinf(length):
             break

@@ -79,28 +79,29 @@ class LaneRequest:
         mates: beams that hit followers. waypoint: where the leader is heading, map frame [m].
         """
         nearest = self._in_way(pose, scan, mates, waypoint)
-        met = nearest < MET_AHEAD
+        asked, wanted = bool(self.lane), self._wanted(nearest < MET_AHEAD)
+        self.lane = _piece(pose, waypoint) if wanted else ()
+        self._silent_for += self._period
+        say = wanted is not asked or (asked and self._silent_for >= REPEAT)
+        if say:
+            self._silent_for = 0.0
+        self.wait = wanted and nearest < CLOSE and self._waited_for < LONGEST_WAIT
+        self._waited_for += self._period if self.wait else 0.0
+        return say
+
+    def _wanted(self, met: bool) -> bool:
+        """Whether a lane is to be asked for now. met: a mate is in the way."""
         self._met_for = self._met_for + self._period if met else 0.0
         self._clear_for = 0.0 if met else self._clear_for + self._period
         self._pause = max(0.0, self._pause - self._period)
-        asked = bool(self.lane)
-        if self.lane:
-            self._asked_for += self._period
-            if self._clear_for >= CLEAR_AFTER or self._asked_for >= LONGEST:
-                self._pause = PAUSE if met else 0.0
-                self.lane = ()
-        elif self._met_for >= ASK_AFTER and self._pause == 0.0:
+        if not self.lane:
             self._asked_for = self._waited_for = 0.0
-            self.lane = ((pose.x, pose.y), waypoint)
-        if self.lane:
-            self.lane = _piece(pose, waypoint)
-        self._silent_for += self._period
-        say = bool(self.lane) is not asked or (asked and self._silent_for >= REPEAT)
-        if say:
-            self._silent_for = 0.0
-        self.wait = bool(self.lane) and nearest < CLOSE and self._waited_for < LONGEST_WAIT
-        self._waited_for += self._period if self.wait else 0.0
-        return say
+            return self._met_for >= ASK_AFTER and self._pause == 0.0
+        self._asked_for += self._period
+        if self._clear_for < CLEAR_AFTER and self._asked_for < LONGEST:
+            return True
+        self._pause = PAUSE if met else 0.0
+        return False
 
     def _in_way(self, pose: Pose, scan: Ranges, mates: frozenset[int], waypoint: Point) -> float:
         """How far ahead on the straight way to the waypoint the next mate is [m]; inf for none."""
