@@ -73,6 +73,9 @@ def run(
     settings: Settings = [],  # noqa: B006 - typer needs a list
     out: Annotated[Path | None, Option(help="Folder for log, summary and figure.")] = None,
     record: Annotated[bool, Option("--record/--no-record", help="Write the log.")] = True,
+    with_view: Annotated[
+        bool, Option("--view/--no-view", help="Add to the log what Foxglove and Rerun show.")
+    ] = True,
     as_json: AsJson = False,
 ) -> None:
     """Run a mission: every robot a process on the bus, recorded.
@@ -83,9 +86,9 @@ def run(
 
     if clock is not None:
         settings = [*settings, f"clock.mode={clock}"]
-    _leave(
-        command.run(scenario, driver.value, settings, seed, map_file, start, goal, out, record, as_json)
-    )
+    places = (map_file, start, goal, out)
+    wanted = (record, record and with_view, as_json)
+    _leave(command.run(scenario, driver.value, settings, seed, *places, *wanted))
 
 
 @app.command()

@@ -11,17 +11,10 @@
 Nothing is held in memory but what was asked for; a stretch of time is found without unpacking the rest.
 """
 
-import json
 from collections.abc import Iterable, Iterator
-from io import BytesIO
 from pathlib import Path
 from typing import Any, TypeVar
 
-from mcap.data_stream import ReadDataStream
-from mcap.opcode import Opcode
-from mcap.records import Metadata
-
-from onehop.analysis.selection import Selected, one_of, select, walk
 from onehop.analysis.tables import TABLES, Table, build
 from onehop.contracts import topics
 from onehop.contracts.errors import InputError
@@ -30,6 +23,7 @@ from onehop.contracts.scenario import Scenario
 from onehop.contracts.values import Wire
 from onehop.drive.codec import decode
 from onehop.drive.log_reader import LogFile
+from onehop.drive.selection import Selected, one_of, select
 from onehop.scenario_file import Bundle
 
 M = TypeVar("M", bound=Wire)
@@ -39,7 +33,8 @@ class Log:
     """One mission's log, sound or torn.
 
     scenario, bundle: what was run. metadata: versions, driver. summary: what `onehop run` printed, None
-    if the log ends before the mission did. torn: its recorder was killed.
+    if the log ends before the mission did.
+    torn: its recorder was killed. file: the same log, tick by tick.
     """
 
     def __init__(self, file: LogFile) -> None:
@@ -48,18 +43,9 @@ class Log:
         self.scenario: Scenario = file.bundle.scenario
         self.metadata = file.metadata
         self.period_ns = self.scenario.clock.period_ns
-        self.summary: dict[str, Any] | None = None
-        self.torn = True
-        self._read_end()
-
-    def _read_end(self) -> None:
-        with self.path.open("rb") as stream:
-            for opcode, length in walk(stream):
-                if opcode == Opcode.METADATA:
-                    record = Metadata.read(ReadDataStream(BytesIO(stream.read(length))))
-                    if record.name == "outcome":
-                        self.summary = json.loads(record.metadata["summary"])
-                self.torn = opcode != Opcode.FOOTER
+        self.summary: dict[str, Any] | None = file.summary
+        self.torn = file.torn
+        self.file = file
 
     @property
     def robots(self) -> tuple[int, ...]:

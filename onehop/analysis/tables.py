@@ -12,7 +12,7 @@ import msgpack
 import numpy as np
 import numpy.typing as npt
 
-from onehop.analysis.selection import Selected
+from onehop.drive.selection import Selected
 
 Column = npt.NDArray[Any]
 Row = tuple[Any, ...]

@@ -4,9 +4,9 @@ from pathlib import Path
 from typing import Any
 
 from onehop import scenario_file
-from onehop.commands.output import emit_json, say
+from onehop.commands.opening import open_with_warning
+from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
-from onehop.drive.log_reader import LogFile
 from onehop.drive.replay import Divergence, Report
 from onehop.drive.replay import replay as re_execute
 
@@ -20,7 +20,7 @@ def replay(
     as_json: bool,
 ) -> int:
     """Re-execute robots, radio and world of a log; returns the exit status."""
-    log = LogFile(path)
+    log = open_with_warning(path).file
     scenario = log.bundle.scenario
     if robot is not None and robot not in scenario.team.robots:
         raise InputError(
@@ -39,8 +39,6 @@ def replay(
         last_tick=None if last_s is None else round(last_s / period),
         scenario=scenario_file.changed(scenario, settings) if settings else None,
     )
-    if log.torn:
-        say(f"{path}: the log is torn; replayed what is sound. onehop salvage makes a sound log of it")
     if as_json:
         emit_json(_as_json(report))
     else:

@@ -27,6 +27,7 @@ def run(
     goal: str | None,
     out: Path | None,
     record: bool,
+    with_view: bool,
     as_json: bool,
 ) -> int:
     """Run one mission; returns the exit status."""
@@ -51,6 +52,8 @@ def run(
             order = launcher.Order(arguments, bundle.scenario.team.robots, folder, record)
             summary = launcher.run(order, display.show)
     figure = _draw(folder, record)
+    if with_view:
+        _add_view(folder / "mission.mcap")
     if as_json:
         emit_json(summary)
     else:
@@ -108,6 +111,18 @@ def _run_inline(
         log.close(summary)
     (folder / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
     return summary
+
+
+def _add_view(path: Path) -> None:
+    """Put the viewer layer into a sound log; a torn one is left as it is."""
+    if not path.exists():
+        return
+    from onehop.analysis.log import open_log
+    from onehop.analysis.view.layer import write_view
+
+    log = open_log(path)
+    if not log.torn:
+        write_view(log, path)
 
 
 def _draw(folder: Path, record: bool) -> Path | None:

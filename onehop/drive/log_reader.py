@@ -1,29 +1,32 @@
 """Read a log, sound or torn: what it was made from, and its wire messages tick by tick.
 
 The file is read front to back, so a log whose recorder was killed gives everything up to the tear: only
-the last, unfinished record is missing. `LogFile.torn` says so after the messages have been read.
+the last, unfinished record is missing.
 """
 
 import json
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
+from io import BytesIO
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
+from mcap.data_stream import ReadDataStream
 from mcap.exceptions import InvalidMagic, McapError
-from mcap.records import Attachment, Channel, Footer, Message, Metadata
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Message, Metadata
 from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
-from onehop.contracts import topics
 from onehop.contracts.errors import LogError
 from onehop.contracts.values import WIRE_VERSION
 from onehop.drive.journal import Digest, WireMessage, canonical_rank
 from onehop.drive.log_writer import MAP_ATTACHMENT, SCENARIO_ATTACHMENT
+from onehop.drive.selection import select, walk
 from onehop.scenario_file import Bundle, bundle_from_json
-
-_WIRE = topics.wire("")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +42,15 @@ class Tick:
 
 
 class LogFile:
-    """One log. Raises LogError when it is none of ours or of a wire version that is not known."""
+    """One log. Raises LogError when it is none of ours or of a wire version that is not known.
+
+    summary: what `onehop run` printed, None if the log ends before the mission did. torn: its recorder
+    was killed.
+    """
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.torn = False
+        self.torn = True
         self.metadata: dict[str, str] = {}
         self.summary: dict[str, Any] | None = None
         attachments: dict[str, bytes] = {}
@@ -62,6 +69,16 @@ class LogFile:
         }
         text = attachments[SCENARIO_ATTACHMENT].decode()
         self.bundle: Bundle = bundle_from_json(text, files, f"{path}: {SCENARIO_ATTACHMENT}")
+        self._read_end()
+
+    def _read_end(self) -> None:
+        with self.path.open("rb") as stream:
+            for opcode, length in walk(stream):
+                if opcode == Opcode.METADATA:
+                    record = Metadata.read(ReadDataStream(BytesIO(stream.read(length))))
+                    if record.name == "outcome":
+                        self.summary = json.loads(record.metadata["summary"])
+                self.torn = opcode != Opcode.FOOTER
 
     def _check_origin(self, attachments: dict[str, bytes]) -> None:
         version = self.metadata.get("wire_version")
@@ -83,11 +100,8 @@ class LogFile:
                 str(self.path), error.strerror or "cannot be read", "name a log that exists"
             ) from None
         with stream:
-            ended = False
             try:
-                for record in StreamReader(stream, validate_crcs=True).records:
-                    ended = ended or isinstance(record, Footer)
-                    yield record
+                yield from StreamReader(stream, validate_crcs=True).records
             except (McapError, struct.error) as error:  # the file ends within a record
                 if isinstance(error, InvalidMagic):
                     raise LogError(str(self.path), "not an MCAP file", "give a .mcap log") from None
@@ -95,28 +109,12 @@ class LogFile:
                 raise LogError(
                     str(self.path), f"damaged near byte {stream.tell()} ({error})", "use a copy of it"
                 ) from None
-            self.torn = not ended
 
     def ticks(self) -> Iterator[Tick]:
-        """Every tick with its wire messages. Sets `torn` and `summary` when it has come to the end."""
-        channels: dict[int, str] = {}
-        current: Tick | None = None
-        for record in self._records():
-            if isinstance(record, Message):
-                key = channels.get(record.channel_id)
-                if key is None:
-                    continue
-                if current is None or record.sequence != current.tick:
-                    if current is not None:
-                        yield _in_order(current)
-                    current = Tick(record.sequence, [])
-                current.messages.append((key, record.data))
-            elif isinstance(record, Channel) and record.topic.startswith(_WIRE):
-                channels[record.id] = record.topic.removeprefix(_WIRE)
-            elif isinstance(record, Metadata) and record.name == "outcome":
-                self.summary = json.loads(record.metadata["summary"])
-        if current is not None:
-            yield _in_order(current)
+        """Every tick with its wire messages, up to where the log is torn."""
+        messages = select(self.path, lambda _: True, self.bundle.scenario.clock.period_ns)
+        for number, group in groupby(messages, key=itemgetter(0)):
+            yield _in_order(Tick(number, [(key, data) for _, key, data in group]))
 
 
 def _in_order(tick: Tick) -> Tick:

@@ -6,7 +6,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from mcap.reader import make_reader
 
+from onehop.drive.log_reader import LogFile, digest
 from tests.onehop.scenes import FIELD, field, log_of
 
 
@@ -80,6 +82,24 @@ def test_an_inline_run_gives_the_promised_keys_and_files(tmp_path: Path) -> None
     assert summary["processes"] == []
     assert json.loads((tmp_path / "here" / "summary.json").read_text()) == summary
     assert (tmp_path / "here" / "trajectory.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(("option", "seen"), [("--view", True), ("--no-view", False)])
+def test_the_log_of_a_run_has_the_viewer_layer_unless_told_otherwise(
+    tmp_path: Path, option: str, seen: bool
+) -> None:
+    bundle = field(tmp_path, "clock.limit_s=2")
+    printed = log_of(bundle, tmp_path / "plain.mcap")
+    told = onehop(
+        "run", "field.toml", "--driver", "inline", "--json", "--out", "here", option,
+        "--set", "clock.limit_s=2", cwd=tmp_path,
+    )  # fmt: skip
+    log = tmp_path / "here" / "mission.mcap"
+    with log.open("rb") as stream:
+        summary = make_reader(stream).get_summary()
+    assert summary is not None
+    assert ("/tf" in {channel.topic for channel in summary.channels.values()}) is seen
+    assert json.loads(told.stdout)["digest"] == digest(LogFile(log)) == printed
 
 
 def test_a_run_that_does_not_arrive_has_status_1(tmp_path: Path) -> None:

@@ -80,6 +80,15 @@ def test_a_torn_log_is_read_with_one_line_of_warning(onehop: Any, torn: Path) ->
     assert "is torn" in answer.err
 
 
+def test_replay_of_a_torn_log_warns_like_the_others(onehop: Any, torn: Path) -> None:
+    answer = onehop("replay", torn, "--json")
+    assert answer.status == 0
+    assert answer.json["divergences"] == 0
+    assert answer.json["ticks"] > 0
+    assert answer.err.count("\n") == 1
+    assert "warning" in answer.err
+
+
 def test_explain_speaks_to_people(onehop: Any, recorded: Path) -> None:
     answer = onehop("explain", recorded, "--robot", 1, "--at", 2)
     assert answer.status == 0

@@ -28,8 +28,9 @@ from onehop.contracts.topics import robot_name
 from onehop.drive.log_writer import LOG_EPOCH_NS
 from world_server.core.mapfile import load_map
 
-POSE_S, SCAN_S, LINK_S = 0.1, 0.2, 0.5
-"""Simulated time between two messages of a kind [s]."""
+POSE_S, SCAN_S, LINK_S, BODY_S = 0.1, 0.2, 0.5, 5.0
+"""Simulated time between two messages of a kind [s]. A body moves with its frame; it is sent again for
+those who start to look in the middle."""
 
 WALL_STEP = 0.25
 """Distance between two points of a wall [m]."""
@@ -98,13 +99,19 @@ class _Layer:
         scenario = log.scenario
         self._copy = copy
         self._period_ns = log.period_ns
-        self._strides = {s: max(1, round(s * 1e9 / log.period_ns)) for s in (POSE_S, SCAN_S, LINK_S)}
+        self._strides = {
+            s: max(1, round(s * 1e9 / log.period_ns)) for s in (POSE_S, SCAN_S, LINK_S, BODY_S)
+        }
         self._walls = load_map(scenario.map, log.bundle.files).segments
         self._radius = scenario.robot.radius
         self._colours = robot_colours(log.robots)
         body = scenario.robot
         half = math.radians(body.laser_fov_deg) / 2
         self._angles = np.linspace(-half, half, body.laser_beams)
+        self._directions = scene.beam_directions(self._angles)
+        self._shapes = {
+            robot: scene.body_shape(self._radius, colour) for robot, colour in self._colours.items()
+        }
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
         self._heard: dict[int, tuple[float, float]] = {}
@@ -163,18 +170,18 @@ class _Layer:
 
     def _add_poses(self, tick: int, stamp: int, poses: dict[int, Pose]) -> None:
         present = frozenset(poses)
-        gone = sorted(self._present - present)
+        gone, came = sorted(self._present - present), present - self._present
         self._present = present
-        if tick % self._strides[POSE_S] and not gone:
+        if tick % self._strides[POSE_S] and not gone and not came:
             return
         placed = sorted(poses.items())
         self._put("/tf", tick, scene.transforms(stamp, placed))
         for robot, pose in placed:
             self._put(f"/{robot_name(robot)}/pose", tick, scene.pose_in_map(stamp, pose))
-        self._put(
-            "/robots/bodies", tick, scene.bodies(stamp, sorted(poses), self._radius, self._colours, gone)
-        )
-        rings = scene.body_points(placed, self._radius, self._colours)
+        if gone or came or tick % self._strides[BODY_S] == 0:
+            scenery = scene.bodies(stamp, sorted(poses), self._radius, self._colours, gone)
+            self._put("/robots/bodies", tick, scenery)
+        rings = scene.body_points(placed, self._shapes)
         self._put("/robots/points", tick, scene.cloud(stamp, scene.MAP, rings))
 
     def _add_scans(self, tick: int, stamp: int, wire: dict[str, bytes], poses: dict[int, Pose]) -> None:
@@ -184,7 +191,7 @@ class _Layer:
                 continue
             ranges = np.frombuffer(msgpack.unpackb(data)["scan"], dtype="<f4")
             name = robot_name(robot)
-            points = scene.scan_points(stamp, robot, ranges, self._angles)
+            points = scene.scan_points(stamp, robot, ranges, self._directions)
             self._put(f"/{name}/scan_points", tick, points)
             self._put(f"/{name}/scan", tick, scene.laser_scan(stamp, robot, ranges, self._angles))
 

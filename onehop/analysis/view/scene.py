@@ -41,6 +41,7 @@ _COLOURED = np.dtype(
 )
 _LINK_HEIGHT = 0.4
 _BODY_HEIGHT = 0.3
+_SCAN_HEIGHT = 0.2
 Points = npt.NDArray[np.float32]
 
 
@@ -85,12 +86,17 @@ def cloud(stamp_ns: int, frame: str, points: npt.NDArray[Any]) -> Any:
     return message
 
 
-def scan_points(stamp_ns: int, robot: int, ranges: Points, angles: npt.NDArray[np.float64]) -> Any:
+def beam_directions(angles: npt.NDArray[np.float64]) -> Points:
+    """Unit vectors of beams at these angles [rad], (n, 2)."""
+    return np.column_stack((np.cos(angles), np.sin(angles))).astype(np.float32)
+
+
+def scan_points(stamp_ns: int, robot: int, ranges: Points, directions: Points) -> Any:
     """What a scan hit, in the robot's frame; beams that hit nothing are left out."""
     hit = np.isfinite(ranges)
-    r, a = ranges[hit], angles[hit]
-    points = np.column_stack((r * np.cos(a), r * np.sin(a), np.full(len(r), 0.2)))
-    return cloud(stamp_ns, base_link(robot), points.astype(np.float32))
+    points = np.full((np.count_nonzero(hit), 3), _SCAN_HEIGHT, dtype=np.float32)
+    points[:, :2] = directions[hit] * ranges[hit, None]
+    return cloud(stamp_ns, base_link(robot), points)
 
 
 def laser_scan(stamp_ns: int, robot: int, ranges: Points, angles: npt.NDArray[np.float64]) -> Any:
@@ -154,19 +160,29 @@ def bodies(
     return message
 
 
-def body_points(poses: Iterable[tuple[int, Pose]], radius: float, colours: dict[int, str]) -> Any:
-    """Robots as small coloured rings with a nose, for viewers that draw no scene; _COLOURED."""
+def body_shape(radius: float, colour: str) -> npt.NDArray[Any]:
+    """A robot as a small coloured ring with a nose, in its own frame, for viewers that draw no scene."""
     turn = np.linspace(0.0, math.tau, 24, endpoint=False)
     size = max(radius, 0.4)
     nose = np.linspace(0.0, 2.0 * size, 8)
-    local_x = np.concatenate((size * np.cos(turn), nose))
-    local_y = np.concatenate((size * np.sin(turn), np.zeros(len(nose))))
-    parts = []
+    x = np.concatenate((size * np.cos(turn), nose))
+    y = np.concatenate((size * np.sin(turn), np.zeros(len(nose))))
+    return _painted(x, y, _BODY_HEIGHT, rgb(colour))
+
+
+def body_points(
+    poses: Iterable[tuple[int, Pose]], shapes: dict[int, npt.NDArray[Any]]
+) -> npt.NDArray[Any]:
+    """The shapes of all robots where they are; _COLOURED."""
+    parts = [np.empty(0, dtype=_COLOURED)]
     for robot, pose in poses:
+        shape = shapes[robot]
+        placed = shape.copy()
         c, s = math.cos(pose.heading), math.sin(pose.heading)
-        x, y = pose.x + c * local_x - s * local_y, pose.y + s * local_x + c * local_y
-        parts.append(_painted(x, y, _BODY_HEIGHT, rgb(colours[robot])))
-    return np.concatenate(parts) if parts else np.empty(0, dtype=_COLOURED)
+        placed["x"] = pose.x + c * shape["x"] - s * shape["y"]
+        placed["y"] = pose.y + s * shape["x"] + c * shape["y"]
+        parts.append(placed)
+    return np.concatenate(parts)
 
 
 def link_points(

@@ -23,7 +23,7 @@ LIKE_AN_OLD_PROCESSOR = {
 def _digest(folder: Path, environment: dict[str, str]) -> str:
     command = [
         sys.executable, "-m", "onehop", "run", "field.toml", "--driver", "inline", "--json",
-        "--out", "run", "--set", "planner.kind=escape",
+        "--out", "run",
     ]  # fmt: skip
     caches = {"NUMBA_CACHE_DIR": str(folder / "cache")}
     ended = subprocess.run(
