@@ -14,6 +14,7 @@ import time
 from pathlib import Path
 
 from onehop import scenario_file
+from onehop.contracts import topics
 from onehop.drive.bus import Bus, make_credentials, open_client, open_router
 from onehop.mission import launcher
 from onehop.mission.processes import free_endpoint
@@ -24,55 +25,52 @@ PERCEPT, ACTION, TRUTH = bytes(900), bytes(400), bytes(700)
 """Messages as long as those of a mission of six."""
 
 
-def answer(endpoint: str, name: str, word: str, hears: str, says: str, data: bytes) -> None:
-    """A process that answers every message on one key with one on another."""
+def answer(endpoint: str, name: str, word: str, says: str, data: bytes) -> None:
+    """A process that answers every message to it with one of its own."""
     with open_client("bench", endpoint, name, word) as bus:
-        bus.subscribe(hears)
-        bus.subscribe("end")
-        put = bus.publisher(says)
+        put = bus.publisher(topics.by(name, says))
         bus.announce(name)
-        while bus.inbox.get()[0] != "end":
+        while bus.receive()[0] != topics.END:
             put(data)
 
 
 def bare(robots: int) -> float:
     """Ticks a second of the bare bus."""
-    names = ["radio", *(f"robot-{i}" for i in range(1, robots + 1))]
+    names = [topics.RADIO, *map(topics.robot_name, range(1, robots + 1))]
     words = make_credentials(names)
     endpoint = free_endpoint()
     spawn = multiprocessing.get_context("spawn")
-    parts = [("radio", "truth", "air", bytes(60 * robots))]
-    parts += [(f"robot-{i}", f"percept/{i}", f"out/{i}", ACTION) for i in range(1, robots + 1)]
+    parts = [(names[0], topics.AIR, bytes(60 * robots))]
+    parts += [(name, topics.OUT, ACTION) for name in names[1:]]
     children = [
         spawn.Process(target=answer, args=(endpoint, name, words[name], *rest), daemon=True)
         for name, *rest in parts
     ]
     with open_router("bench", endpoint, words) as bus:
-        bus.subscribe("out/*")
-        bus.subscribe("air")
-        bus.watch("alive/*")
+        bus.watch("*")
         for child in children:
             child.start()
         for _ in children:
-            bus.inbox.get(timeout=30.0)
-        rate = _ticks(bus, robots)
-        bus.publisher("end")(b"")
+            bus.receive()
+        rate = _ticks(bus, names[1:])
+        for name in names:
+            bus.publisher(topics.to(name, topics.END))(b"")
         for child in children:
             child.join(10.0)
     return rate
 
 
-def _ticks(bus: Bus, robots: int) -> float:
-    put_truth = bus.publisher("truth")
-    put = [bus.publisher(f"percept/{i}") for i in range(1, robots + 1)]
+def _ticks(bus: Bus, robots: list[str]) -> float:
+    put_truth = bus.publisher(topics.to(topics.RADIO, topics.TRUTH))
+    put = [bus.publisher(topics.to(name, topics.PERCEPT)) for name in robots]
     started = time.perf_counter()
     for _ in range(TICKS):
         put_truth(TRUTH)
-        bus.inbox.get(timeout=10.0)
+        bus.receive()
         for one in put:
             one(PERCEPT)
         for _ in put:
-            bus.inbox.get(timeout=10.0)
+            bus.receive()
     return TICKS / (time.perf_counter() - started)
 
 

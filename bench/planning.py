@@ -1,12 +1,8 @@
-"""The planner's figures as one JSON object.
+"""Time and memory of the planner as one JSON object.
 
-Without arguments: time of a local plan (200 samples and A*) beside OMPL's PRM on the same scene, time of
-a step that only follows its way, and memory. OMPL is an optional development dependency (pip install
-ompl); without it the object says "not installed".
-
-With maps: `python bench/planning.py --pairs 50 scenarios/map1.toml ../shared/maps/ros/depot.yaml ...`
-drives escape between random pairs of places that the known map shows to be connected, and reports path
-length against the shortest, beside TangentBug's.
+Time of a local plan (200 samples and A*) beside OMPL's PRM on the same scene, time of a step that only
+follows its way, and memory. OMPL is an optional development dependency (pip install ompl); without it
+the object says "not installed".
 """
 
 import argparse
@@ -15,43 +11,20 @@ import json
 import math
 import resource
 import time
-import tomllib
-from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from tangent_bug import AROUND, tangent_bug
 
-from onehop.analysis.shortest import KnownMap, way_length
 from onehop.contracts.geometry import Pose
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario, robot_briefing
-from onehop.contracts.sections import (
-    ClockSection,
-    GoalSection,
-    MapSection,
-    PlannerSection,
-    RobotSection,
-    StartSection,
-)
-from onehop.drive.solo import solo
-from robot_agent.core.planning import make_pathfinder
+from onehop.contracts.sections import GoalSection, MapSection, RobotSection
+from robot_agent.core.planning import make_pathfinder, nobody
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
 from robot_agent.core.planning.view import NO_POINTS, View
-from robot_agent.core.scan import Fan, FloatArray
+from robot_agent.core.scan import Fan
 from world_server.core.laser import Laser
-from world_server.core.mapfile import load_map, map_files
-from world_server.core.walls import WallMap
-
-SMALL_MAPS = {
-    "depot": (PlannerSection(inflation=0.25), RobotSection(radius=0.15, leader_speed=0.5)),
-    "tb3_sandbox": (
-        PlannerSection(inflation=0.2),
-        RobotSection(radius=0.12, leader_speed=0.3, laser_range=3.5),
-    ),
-}
-"""Robots that fit the ROS maps, which are a few tens of metres: a TurtleBot3 sees 3.5 m."""
+from world_server.core.mapfile import load_map
 
 BLOCKS = tuple(
     ((x, y), (x + 1.5, y), (x + 1.5, y + 2.0), (x, y + 2.0))
@@ -144,7 +117,7 @@ def following(ticks: int) -> dict[str, float]:
         scan = laser.scans(pose, np.zeros(1, dtype=np.int32))[0]
         place, before = Pose(*map(float, pose[0])), finder.survey
         began = time.perf_counter()
-        twist = finder.step(place, scan, frozenset()).twist
+        twist = finder.step(place, scan, nobody).twist
         took = (time.perf_counter() - began) * 1e6
         every.append(took)
         if finder.survey is before:
@@ -158,89 +131,10 @@ def percentiles(values: list[float]) -> dict[str, float]:
     return {"p50_ms": float(np.percentile(values, 50)), "p99_ms": float(np.percentile(values, 99))}
 
 
-def read_map(path: Path) -> tuple[Scenario, WallMap]:
-    """A scenario for one leader on a map file: a scenario's polygons, a ROS map or a MovingAI grid."""
-    planner, body = SMALL_MAPS.get(path.stem, (PlannerSection(), RobotSection()))
-    if path.suffix == ".toml":
-        table = tomllib.loads(path.read_text())["map"]
-        polygons = tuple(tuple((float(x), float(y)) for x, y in p) for p in table["obstacles"])
-        section = MapSection(width=table["width"], height=table["height"], obstacles=polygons)
-        walls = load_map(section, {})
-    else:
-        section = MapSection(file=str(path))
-        files = {str(path): path.read_bytes()}
-        files |= {
-            name: (path.parent / name).read_bytes() for name in map_files(str(path), files[str(path)])
-        }
-        walls = load_map(section, files)
-    return Scenario(
-        name=path.stem, goal=GoalSection(0, 0), map=section, planner=planner, robot=body
-    ), walls
-
-
-def campaign(path: Path, count: int) -> dict[str, object]:
-    """Random pairs on one map: escape against the shortest way, and TangentBug against it."""
-    scenario, walls = read_map(path)
-    known = KnownMap(walls, scenario.planner.inflation, min(0.25, scenario.planner.inflation / 2))
-    cells, random = np.argwhere(known.free), generator(7, "pairs")
-    span = max(walls.bounds[2] - walls.bounds[0], walls.bounds[3] - walls.bounds[1])
-    ratios, tangent, failed, clearance = [], [], [], math.inf
-    pairs = 0
-    while pairs < count:
-        (r0, c0), (r1, c1) = cells[random.integers(len(cells), size=2)].tolist()
-        start, goal = (float(known.x[c0]), float(known.y[r0])), (float(known.x[c1]), float(known.y[r1]))
-        if math.dist(start, goal) < 0.1 * span:
-            continue
-        way = known.shortest(start, known.distances(goal))
-        if way is None:
-            continue
-        pairs += 1
-        shortest = way_length(way)
-        bug = tangent_bug(known.free, c0, r0, c1, r1, scenario.robot.laser_range / known.cell, AROUND)
-        tangent.append(bug * known.cell / shortest if bug > 0 else math.inf)
-        outcome = solo(
-            replace(
-                scenario,
-                start=StartSection(x=start[0], y=start[1]),
-                goal=GoalSection(*goal),
-                clock=ClockSection(limit_s=12000.0),
-            ),
-            walls,
-        )
-        clearance = min(clearance, outcome.min_clearance)
-        if outcome.summary()["reached"]:
-            ratios.append(outcome.length / (shortest - scenario.goal.tolerance))
-        else:
-            failed.append({"start": start, "goal": goal, "answer": outcome.progress.value})
-    return {
-        "map": path.name,
-        "pairs": pairs,
-        "reached": len(ratios),
-        "failed": failed,
-        "min_clearance_m": round(clearance, 4),
-        "inflation_m": scenario.planner.inflation,
-        "escape": shares(ratios),
-        "tangent_bug": shares(tangent),
-    }
-
-
-def shares(ratios: list[float]) -> dict[str, float]:
-    values: FloatArray = np.array(ratios)
-    return {
-        "median": round(float(np.median(values)), 3),
-        "p95": round(float(np.percentile(values, 95, method="lower")), 3),
-    }
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
-    parser.add_argument("maps", nargs="*", type=Path)
-    parser.add_argument("--pairs", type=int, default=50)
     parser.add_argument("--rounds", type=int, default=300)
     arguments = parser.parse_args()
-    if arguments.maps:
-        print(json.dumps([campaign(path, arguments.pairs) for path in arguments.maps], indent=1))
-        return
     local_plan(20)
     ours, peer = local_plan(arguments.rounds), ompl_prm(max(20, arguments.rounds // 10))
     figures: dict[str, object] = {"local_plan_200": ours, "ompl_prm_200": peer, "step": following(4000)}

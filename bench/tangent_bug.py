@@ -9,12 +9,22 @@ import math
 
 import numba
 import numpy as np
+import numpy.typing as npt
 
 from world_server.core.walls import BoolArray, FloatArray
+
+IntArray = npt.NDArray[np.int64]
 
 RAYS = 360
 AROUND = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)])
 """Steps (column, row) to the eight neighbours, counter-clockwise."""
+
+
+CHORD = 4
+"""Steps along a wall that are measured, and looked around after, at once."""
+
+LONGEST = 100000
+"""Bound of every loop: far longer than any wall."""
 
 
 @numba.njit(cache=True)
@@ -74,29 +84,89 @@ def _best_end(
 
 
 @numba.njit(cache=True)
-def _nearest_seen(sight: FloatArray, x: float, y: float, gx: float, gy: float) -> float:
-    least = np.inf
+def _nearest_seen(sight: FloatArray, x: float, y: float, gx: float, gy: float) -> tuple[float, int]:
+    """Distance to the goal of the nearest place in sight, and the ray that it ends."""
+    least, best = np.inf, 0
     for ray in range(RAYS):
         angle = 2 * math.pi * ray / RAYS
-        least = min(
-            least,
-            math.hypot(x + sight[ray] * math.cos(angle) - gx, y + sight[ray] * math.sin(angle) - gy),
-        )
-    return least
+        left = math.hypot(x + sight[ray] * math.cos(angle) - gx, y + sight[ray] * math.sin(angle) - gy)
+        if left < least:
+            least, best = left, ray
+    return least, best
 
 
 @numba.njit(cache=True)
-def tangent_bug(
-    free: BoolArray, x: float, y: float, gx: float, gy: float, reach: float, around: FloatArray
+def _next_heading(
+    free: BoolArray, column: int, row: int, heading: int, side: int, around: IntArray
+) -> int:
+    """First free step after one of `heading`, the wall on the left (side +1) or on the right (-1)."""
+    turn = (heading + 2 * side) % 8
+    for _ in range(8):
+        if free[row + around[turn, 1], column + around[turn, 0]]:
+            break
+        turn = (turn - side) % 8
+    return turn
+
+
+@numba.njit(cache=True)
+def _follow(
+    free: BoolArray,
+    x: float,
+    y: float,
+    gx: float,
+    gy: float,
+    reach: float,
+    side: int,
+    least: float,
+    around: IntArray,
+) -> tuple[float, float, float]:
+    """From the wall ahead along it, until a place closer to the goal than ever is in sight, and there.
+
+    Place and length; the length is infinite when the loop closes without. least: distance to beat.
+    Lengths are chords over CHORD steps, because steps to eight neighbours would make slanting walls
+    longer than they are.
+    """
+    direction = math.atan2(gy - y, gx - x)
+    c, s, length = math.cos(direction), math.sin(direction), 0.0
+    while free[round(y + 0.5 * s), round(x + 0.5 * c)]:
+        x, y, length = x + 0.5 * c, y + 0.5 * s, length + 0.5
+    column, row = round(x), round(y)
+    followed = min(least, math.hypot(column - gx, row - gy))
+    wall = math.atan2(round(y + 0.5 * s) - row, round(x + 0.5 * c) - column)
+    heading = (round(wall / (math.pi / 4)) - 2 * side) % 8
+    first_column, first_row, first_heading = column, row, -1
+    last_column, last_row = column, row
+    for moved in range(LONGEST):
+        heading = _next_heading(free, column, row, heading, side, around)
+        if column == first_column and row == first_row:
+            if heading == first_heading:
+                break
+            if first_heading < 0:
+                first_heading = heading
+        column, row = column + around[heading, 0], row + around[heading, 1]
+        followed = min(followed, math.hypot(column - gx, row - gy))
+        if moved % CHORD == CHORD - 1:
+            length += math.hypot(column - last_column, row - last_row)
+            last_column, last_row = column, row
+            sight = _look(free, float(column), float(row), reach)
+            left, ray = _nearest_seen(sight, float(column), float(row), gx, gy)
+            if left < followed - 1.0:
+                angle = 2 * math.pi * ray / RAYS
+                x, y = column + sight[ray] * math.cos(angle), row + sight[ray] * math.sin(angle)
+                return x, y, length + sight[ray]
+    return float(column), float(row), np.inf
+
+
+@numba.njit(cache=True)
+def _way(
+    free: BoolArray, x: float, y: float, gx: float, gy: float, reach: float, around: IntArray
 ) -> float:
-    """Length of the way from (x, y) to (gx, gy), all in cells; -1 if the robot finds none."""
     length, least = 0.0, math.hypot(x - gx, y - gy)
-    for _ in range(100000):
+    for _ in range(LONGEST):
         if _straight(free, x, y, gx, gy):
             return length + math.hypot(x - gx, y - gy)
         sight = _look(free, x, y, reach)
         ray, left = _best_end(sight, x, y, gx, gy, reach)
-        here = math.hypot(x - gx, y - gy)
         angle = 2 * math.pi * ray / RAYS
         if ray >= 0 and left < least - 0.5:
             step = min(2.0, sight[ray])
@@ -104,38 +174,19 @@ def tangent_bug(
             length += step
             least = min(least, max(left, math.hypot(x - gx, y - gy)))
             continue
-        followed = min(here, _nearest_seen(sight, x, y, gx, gy))
         cross = math.cos(angle) * (gy - y) - math.sin(angle) * (gx - x)
         side = -1 if cross > 0 else 1
-        column, row = round(x), round(y)
-        heading = round(math.atan2(gy - y, gx - x) / (math.pi / 4)) % 8
-        while free[row + around[heading, 1], column + around[heading, 0]]:
-            column, row = column + around[heading, 0], row + around[heading, 1]
-            length += math.hypot(around[heading, 0], around[heading, 1])
-        heading = (heading - 2 * side) % 8
-        first_column, first_row, first_heading, moved = column, row, -1, 0
-        while True:
-            turn = (heading + 2 * side) % 8
-            for _ in range(8):
-                if free[row + around[turn, 1], column + around[turn, 0]]:
-                    break
-                turn = (turn - side) % 8
-            if column == first_column and row == first_row:
-                if turn == first_heading:
-                    return -1.0
-                if first_heading < 0:
-                    first_heading = turn
-            heading = turn
-            column, row = column + around[heading, 0], row + around[heading, 1]
-            length += math.hypot(around[heading, 0], around[heading, 1])
-            moved += 1
-            if moved % 2 == 0:
-                sight = _look(free, float(column), float(row), reach)
-                if _nearest_seen(sight, float(column), float(row), gx, gy) < followed - 1.0:
-                    break
-                followed = min(followed, math.hypot(column - gx, row - gy))
-            if moved > 200000:
-                return -1.0
-        x, y = float(column), float(row)
-        least = followed
+        x, y, further = _follow(free, x, y, gx, gy, reach, side, least, around)
+        least = min(least, math.hypot(x - gx, y - gy))
+        length += further
+        if math.isinf(length):
+            break
     return -1.0
+
+
+def tangent_bug(free: BoolArray, x: float, y: float, gx: float, gy: float, reach: float) -> float:
+    """Length of the way from (x, y) to (gx, gy), all in cells; -1 if the robot finds none.
+
+    free: (rows, columns). reach: of the range sensor.
+    """
+    return float(_way(free, float(x), float(y), float(gx), float(gy), reach, AROUND))

@@ -1,7 +1,7 @@
 """The recorder process: everything on the bus into one MCAP file, as it happens.
 
-The world hands it one batch per tick. It writes ticks in canonical order, flushes them to the operating
-system and tells the world how far the file is; the world never runs more than a few ticks
+The world hands it a few ticks at a time. It writes them in canonical order, flushes them to the
+operating system and tells the world how far the file is; the world never runs more than a few ticks
 ahead. With --no-file it only makes the digest.
 """
 
@@ -18,12 +18,9 @@ from onehop.drive.bus import GONE, Bus
 from onehop.drive.codec import decode
 from onehop.drive.journal import Journal, WireMessage
 from onehop.drive.log_writer import LogWriter
-from onehop.drive.record import unpack_record
+from onehop.drive.record import unpack_records
 from onehop.mission.summary import summarize
 from onehop.scenario_file import bundle_from_json
-
-FLUSH_TICKS = 2
-"""Ticks between two flushes; what a kill -9 can take is less than that and what is in flight."""
 
 LAST_WORDS_S = 2.0
 """How long to wait for the last records after the end of the mission was announced."""
@@ -39,9 +36,7 @@ def main() -> int:
     options = parser.parse_args()
     node.start(options)
     with node.connect(options, topics.RECORDER) as bus:
-        bus.subscribe(topics.RECORD)
-        bus.subscribe(topics.END)
-        bus.watch(topics.alive(topics.WORLD))
+        bus.watch(topics.WORLD)
         briefing = decode(LogBriefing, node.briefing(bus, topics.RECORDER))
         options.out.mkdir(parents=True, exist_ok=True)
         return _Recorder(bus, briefing, options.out, not options.no_file).serve()
@@ -57,38 +52,38 @@ class _Recorder:
             bundle = bundle_from_json(briefing.scenario_json, dict(briefing.files), "briefing")
             self._log = LogWriter(self._path, bundle, briefing.driver)
         self._journal = Journal(self._write)
-        self._acknowledge = bus.publisher(topics.RECORDED)
+        self._acknowledge = bus.publisher(topics.by(topics.RECORDER, topics.RECORDED))
         self._end: End | None = None
 
     def _write(self, tick: int, messages: list[WireMessage]) -> None:
         if self._log is not None:
             self._log.write(tick, messages)
-        if (tick + 1) % FLUSH_TICKS == 0:
-            if self._log is not None:
-                self._log.flush()
-            self._acknowledge(tick.to_bytes(8, "little"))
 
     def serve(self) -> int:
         """Record until the end of the mission, or of the world."""
         self._bus.announce(topics.RECORDER)
         while self._end is None:
-            key, data = self._bus.inbox.get()
-            if data is GONE:
+            what, data = self._bus.receive()
+            if data == GONE:
                 break
-            self._take(key, data)
+            self._take(what, data)
         deadline = time.monotonic() + LAST_WORDS_S
         while self._end is not None and self._journal.last_tick < self._end.last_tick:
-            received = self._bus.receive(max(0.0, deadline - time.monotonic()))
+            received = self._bus.receive_by(deadline)
             if received is None:
                 break
             self._take(*received)
         return self._finish()
 
-    def _take(self, key: str, data: bytes) -> None:
-        if key == topics.END:
+    def _take(self, what: str, data: bytes) -> None:
+        if what == topics.END:
             self._end = decode(End, data)
-        elif key == topics.RECORD:
-            self._journal.add(*unpack_record(data))
+        elif what == topics.RECORD:
+            for record in unpack_records(data):
+                self._journal.add(*record)
+            if self._log is not None:
+                self._log.flush()
+            self._acknowledge(self._journal.last_tick.to_bytes(8, "little"))
 
     def _finish(self) -> int:
         summary: dict[str, Any] | None = None
@@ -101,7 +96,7 @@ class _Recorder:
             return 1
         text = json.dumps(summary, indent=1)
         (self._out / "summary.json").write_text(text + "\n")
-        self._bus.publisher(topics.RESULT)(text.encode())
+        self._bus.publisher(topics.to(topics.OPERATOR, topics.RESULT))(text.encode())
         return 0
 
 

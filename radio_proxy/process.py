@@ -17,20 +17,18 @@ def main() -> int:
     options = parser.parse_args()
     node.start(options)
     with node.connect(options, topics.RADIO) as bus:
-        bus.subscribe(topics.TRUTH)
-        bus.subscribe(topics.END)
-        bus.watch(topics.alive(topics.WORLD))
+        bus.watch(topics.WORLD)
         radio = Radio(decode(RadioBriefing, node.briefing(bus, topics.RADIO)))
         node.calm_garbage_collector()
         return _serve(bus, radio)
 
 
 def _serve(bus: Bus, radio: Radio) -> int:
-    put = bus.publisher(topics.AIR)
+    put = bus.publisher(topics.by(topics.RADIO, topics.AIR))
     bus.announce(topics.RADIO)
     while True:
-        key, data = bus.inbox.get()
-        if key == topics.TRUTH:
+        what, data = bus.receive()
+        if what == topics.TRUTH:
             truth = decode(Truth, data)
             carried = radio.carry(truth)
             messages: list[WireMessage] = [
@@ -38,7 +36,7 @@ def _serve(bus: Bus, radio: Radio) -> int:
             ]
             messages.append((topics.ETHER, encode(carried.ether)))
             put(pack_record(truth.tick, messages))
-        elif key == topics.END:
+        elif what == topics.END:
             return 0
-        elif data is GONE:
+        elif data == GONE:
             return 1

@@ -21,27 +21,23 @@ def main() -> int:
     node.start(options)
     name = topics.robot_name(options.id)
     with node.connect(options, name) as bus:
-        for key in (topics.percept, topics.fate):
-            bus.subscribe(key(options.id))
-        bus.subscribe(topics.END)
-        bus.watch(topics.alive(topics.WORLD))
+        bus.watch(topics.WORLD)
         robot = Robot(decode(Briefing, node.briefing(bus, name)))
         node.calm_garbage_collector()
-        return _serve(bus, robot, options.id, name)
+        return _serve(bus, robot, name)
 
 
-def _serve(bus: Bus, robot: Robot, identity: int, name: str) -> int:
-    put = bus.publisher(topics.out(identity))
-    percept_key, fate_key = topics.percept(identity), topics.fate(identity)
+def _serve(bus: Bus, robot: Robot, name: str) -> int:
+    put = bus.publisher(topics.by(name, topics.OUT))
     bus.announce(name)
     while True:
-        key, data = bus.inbox.get()
-        if key == percept_key:
+        what, data = bus.receive()
+        if what == topics.PERCEPT:
             _, ((_, seen), (_, heard)) = unpack_record(data)
             put(encode(robot.step(percept(decode(Observation, seen), decode(Inbox, heard)))))
-        elif key == fate_key:
+        elif what == topics.FATE:
             os.kill(os.getpid(), signal.SIGKILL)
-        elif key == topics.END:
+        elif what == topics.END:
             return 0
-        elif data is GONE:
+        elif data == GONE:
             return 1

@@ -19,16 +19,27 @@ from onehop.contracts.messages import Action, End, Outcome, Progress, RobotProgr
 from onehop.contracts.scenario import RadioBriefing, robot_briefing
 from onehop.drive import node
 from onehop.drive.briefings import LogBriefing, radio_briefing
-from onehop.drive.bus import ALIVE, GONE, Bus, open_router
+from onehop.drive.bus import ALIVE, Bus, open_router
 from onehop.drive.codec import decode, encode
 from onehop.drive.journal import WireMessage
-from onehop.drive.record import pack_record, unpack_record
+from onehop.drive.record import Record, pack_record, pack_records, unpack_record
 from onehop.scenario_file import Bundle
 from world_server.core.mapfile import load_map
 from world_server.core.world import World
 
+RECORD_TICKS = 3
+"""Ticks that go to the recorder at once."""
+
 RECORD_WINDOW = 5
 """Ticks that the world may be ahead of the file: what a kill -9 of the recorder can cost at most."""
+
+_AIR = f"{topics.RADIO}/{topics.AIR}"
+_RECORDED = f"{topics.RECORDER}/{topics.RECORDED}"
+_STOPS = (f"{topics.OPERATOR}/{topics.CONTROL}", f"{topics.WORLD}/{topics.CONTROL}")
+_ALIVE = f"{topics.WORLD}/{topics.alive('')}"
+"""What the bus calls the messages that the world hears."""
+
+_TOLD_OF_THE_OUTCOME = (topics.RECORDER, topics.OPERATOR)
 
 PROGRESS_S = 0.2
 FAREWELL_S = 30.0
@@ -84,10 +95,12 @@ class _Host:
         self._world = world
         robots = self._scenario.team.robots
         self._incarnations = dict.fromkeys(robots, 0)
-        self._names = {topics.alive(topics.robot_name(i)): i for i in robots}
+        self._names = {topics.robot_name(i): i for i in robots}
+        self._outs = {f"{name}/{topics.OUT}": i for name, i in self._names.items()}
         self._alive: set[str] = set()
         self._recorded = -1
         self._last_tick = -1
+        self._record: list[Record] = []
         self._air: bytes | None = None
         self._actions: dict[int, tuple[Action, bytes]] = {}
         self._awaited: set[int] = set()
@@ -101,23 +114,23 @@ class _Host:
                 LogBriefing(driver, bundle.scenario_json(), tuple(sorted(bundle.files.items())))
             ),
         }
-        self._put_truth = bus.publisher(topics.TRUTH)
-        self._put_percept = {i: bus.publisher(topics.percept(i)) for i in robots}
-        self._put_fate = {i: bus.publisher(topics.fate(i)) for i in robots}
-        self._put_record = bus.publisher(topics.RECORD, express=False)
-        self._put_progress = bus.publisher(topics.PROGRESS, express=False)
-        self._put_restart = bus.publisher(topics.RESTART)
-        self._put_end = bus.publisher(topics.END)
+        to = topics.to
+        self._put_truth = bus.publisher(to(topics.RADIO, topics.TRUTH))
+        self._put_percept = {
+            i: bus.publisher(to(name, topics.PERCEPT)) for name, i in self._names.items()
+        }
+        self._put_fate = {i: bus.publisher(to(name, topics.FATE)) for name, i in self._names.items()}
+        self._put_record = bus.publisher(to(topics.RECORDER, topics.RECORD), express=False)
+        self._put_progress = bus.publisher(to(topics.OPERATOR, topics.PROGRESS), express=False)
+        self._put_restart = bus.publisher(to(topics.OPERATOR, topics.RESTART))
+        self._put_end = [bus.publisher(to(name, topics.END)) for name in _TOLD_OF_THE_OUTCOME]
+        self._dismiss = [bus.publisher(to(name, topics.END)) for name in (*self._names, topics.RADIO)]
 
     def serve(self) -> int:
         """Run the mission from the first process's arrival to the last one's farewell."""
         signal.signal(signal.SIGTERM, self._on_sigterm)
         bus = self._bus
-        bus.subscribe(topics.out("*"))
-        bus.subscribe(topics.AIR)
-        bus.subscribe(topics.RECORDED)
-        bus.subscribe(topics.CONTROL)
-        bus.watch(topics.alive("*"))
+        bus.watch("*")
         bus.answer(topics.config("*"), self._brief)
         bus.announce(topics.WORLD)
         started = time.monotonic()
@@ -129,28 +142,33 @@ class _Host:
         except _InterruptedError as interruption:
             outcome = self._world.aborted(interruption.reason)
         wall_s = time.monotonic() - started
-        self._put_end(encode(End(outcome, self._last_tick, wall_s)))
+        self._hand_over_record()
+        end = encode(End(outcome, self._last_tick, wall_s))
+        for put in self._put_end:
+            put(end)
+        for put in self._dismiss:
+            put(b"")
         self._await_farewell()
         return 0
 
     def _on_sigterm(self, *_: object) -> None:
-        self._bus.inbox.put((topics.CONTROL, b"stop"))
+        self._bus.tell_self(topics.CONTROL)
 
     def _brief(self, key: str) -> bytes | None:
         """The answer to a process that asks for its briefing."""
         name = key.removeprefix(topics.config(""))
-        robot = self._names.get(topics.alive(name))
+        robot = self._names.get(name)
         if robot is None:
             return self._briefings.get(key)
         return encode(robot_briefing(self._scenario, robot, self._incarnations[robot]))
 
     def _await_everyone(self) -> None:
-        wanted = {*self._names, topics.alive(topics.RADIO), topics.alive(topics.RECORDER)}
+        wanted = {*self._names, topics.RADIO, topics.RECORDER}
         deadline = time.monotonic() + START_S
         while missing := wanted - self._alive:
             self._hear(deadline)
             if time.monotonic() > deadline:
-                names = ", ".join(sorted(key.removeprefix(topics.alive("")) for key in missing))
+                names = ", ".join(sorted(missing))
                 raise _InterruptedError(f"not started within {START_S:.0f} s: {names}")
 
     def _run(self) -> Outcome:
@@ -175,14 +193,20 @@ class _Host:
             self._put_percept[presence.robot](percept)
         self._collect(truth)
         done = [(topics.out(i), self._actions[i][1]) for i in sorted(self._actions)]
-        self._put_record(pack_record(truth.tick, [(topics.TRUTH, encoded_truth), *air, *seen, *done]))
+        self._record.append((truth.tick, [(topics.TRUTH, encoded_truth), *air, *seen, *done]))
         self._last_tick = truth.tick
+        if len(self._record) == RECORD_TICKS:
+            self._hand_over_record()
         world.advance({i: self._actions[i][0] for i in sorted(self._actions)})
         for i in sorted(self._fenced):
             world.fence(i, self._fenced[i])
         self._fenced.clear()
         self._report_progress(truth)
         return world.outcome()
+
+    def _hand_over_record(self) -> None:
+        self._put_record(pack_records(self._record))
+        self._record.clear()
 
     def _await_air(self) -> list[WireMessage]:
         """Inboxes and record of this tick, from the radio."""
@@ -203,7 +227,7 @@ class _Host:
         self._actions.clear()
         self._awaited = {presence.robot for presence in truth.present}
         for i in sorted(self._awaited):
-            if topics.alive(topics.robot_name(i)) not in self._alive:
+            if topics.robot_name(i) not in self._alive:
                 self._fence(i, "its process died")
         deadline = time.monotonic() + self._scenario.clock.silence_s
         while self._awaited or truth.tick - self._recorded > RECORD_WINDOW:
@@ -218,31 +242,34 @@ class _Host:
 
     def _hear(self, deadline: float) -> None:
         """Take in one message, waiting for it until the deadline at most."""
-        received = self._bus.receive(max(0.0, deadline - time.monotonic()))
+        received = self._bus.receive_by(deadline)
         if received is None:
             return
         key, data = received
-        if key == topics.RECORDED:
-            self._recorded = int.from_bytes(data, "little")
-        elif key == topics.AIR:
+        robot = self._outs.get(key)
+        if robot is not None:
+            self._on_action(robot, data)
+        elif key == _AIR:
             self._air = data
-        elif key == topics.CONTROL:
+        elif key == _RECORDED:
+            self._recorded = int.from_bytes(data, "little")
+        elif key in _STOPS:
             self._stop = "stopped by the operator"
-        elif data is ALIVE:
-            self._alive.add(key)
-        elif data is GONE:
-            self._on_gone(key)
-        elif key.startswith(topics.out("")):
-            self._on_action(int(key.removeprefix(topics.out(""))), data)
+        elif key.startswith(_ALIVE):
+            self._on_alive(key.removeprefix(_ALIVE), data == ALIVE)
 
-    def _on_gone(self, key: str) -> None:
-        self._alive.discard(key)
-        robot = self._names.get(key)
+    def _on_alive(self, name: str, alive: bool) -> None:
+        """Take in that a process has come or gone."""
+        if alive:
+            self._alive.add(name)
+            return
+        self._alive.discard(name)
+        robot = self._names.get(name)
         if robot is not None:
             if robot != self._restarting:
                 self._fence(robot, "its process died")
-        elif key in (topics.alive(topics.RADIO), topics.alive(topics.RECORDER)):
-            self._stop = f"the {key.removeprefix(topics.alive(''))} process died"
+        elif name in (topics.RADIO, topics.RECORDER):
+            self._stop = f"the {name} process died"
 
     def _on_action(self, robot: int, data: bytes) -> None:
         if robot not in self._awaited:
@@ -278,15 +305,15 @@ class _Host:
                     self._restart(i)
 
     def _restart(self, robot: int) -> None:
-        key = topics.alive(topics.robot_name(robot))
+        name = topics.robot_name(robot)
         self._incarnations[robot] += 1
         self._put_fate[robot](b"")
         self._restarting = robot
         deadline = time.monotonic() + RESTART_S
-        while key in self._alive and time.monotonic() < deadline:
+        while name in self._alive and time.monotonic() < deadline:
             self._hear(deadline)
         self._put_restart(str(robot).encode())
-        while key not in self._alive:
+        while name not in self._alive:
             self._hear(deadline)
             if time.monotonic() > deadline:
                 raise _InterruptedError(f"robot {robot} was not started again within {RESTART_S:.0f} s")
@@ -306,6 +333,6 @@ class _Host:
     def _await_farewell(self) -> None:
         """Stay, as the router of the bus, until everyone who was told of the end has left."""
         deadline = time.monotonic() + FAREWELL_S
-        staying = {*self._names, topics.alive(topics.RADIO), topics.alive(topics.RECORDER)}
+        staying = {*self._names, topics.RADIO, topics.RECORDER}
         while self._alive & staying and time.monotonic() < deadline:
             self._hear(deadline)

@@ -37,11 +37,17 @@ class LogCopy:
         elif isinstance(record, Channel) and record.id not in self._channels:
             self._take_channel(record)
         elif isinstance(record, Metadata):
+            self._settle()
             self.writer.add_metadata(record.name, record.metadata)
         elif isinstance(record, Attachment):
+            self._settle()
             self.writer.add_attachment(
                 record.create_time, record.log_time, record.name, record.media_type, record.data
             )
+
+    def _settle(self) -> None:
+        """Write out the messages so far: the writer holds them back, and nothing may overtake them."""
+        self.writer.flush()  # type: ignore[no-untyped-call]
 
     def _take_channel(self, record: Channel) -> None:
         self.keys[record.id] = record.topic

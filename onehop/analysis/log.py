@@ -20,12 +20,13 @@ from onehop.contracts import topics
 from onehop.contracts.errors import InputError
 from onehop.contracts.messages import Action, Ether, Inbox, Observation, Truth
 from onehop.contracts.scenario import Scenario
+from onehop.contracts.values import Wire
 from onehop.drive.codec import decode
 from onehop.drive.log_reader import LogFile
 from onehop.drive.selection import Selected, one_of, select
 from onehop.scenario_file import Bundle
 
-M = TypeVar("M")
+M = TypeVar("M", bound=Wire)
 
 
 class Log:

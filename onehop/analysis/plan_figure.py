@@ -49,7 +49,7 @@ def plan_figure(
 
 
 def _road_maps(axes: Axes, outcome: Solo) -> None:
-    edges = [survey.edges.reshape(-1, 2, 2) for survey in outcome.surveys]
+    edges = [survey.roadmap.edges.reshape(-1, 2, 2) for survey in outcome.surveys]
     samples = [survey.samples for survey in outcome.surveys]
     if not edges:
         return

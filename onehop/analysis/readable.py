@@ -10,7 +10,12 @@ from onehop.contracts.errors import DecodeError
 from onehop.drive.codec import as_map
 from robot_agent.core.messages import Ack, Beacon, Command, Join, Message, Order, Phase, decode
 
-_ORDERS = {Order.NEXT: "Next", Order.LOST_FOLLOWER: "Lost_Follower", Order.NARROW: "Narrow"}
+_ORDERS = {
+    Order.NEXT: "Next",
+    Order.LOST_FOLLOWER: "Lost_Follower",
+    Order.NARROW: "Narrow",
+    Order.MAKE_ROOM: "Make_Room",
+}
 
 
 def fields(data: bytes) -> Any:

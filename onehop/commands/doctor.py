@@ -17,6 +17,7 @@ LIBRARIES = (
     "msgpack",
     "mcap",
     "cattrs",
+    "msgspec",
     "typer",
     "rich",
     "numba",

@@ -28,7 +28,8 @@ def link(
         return 0
     rows = table(
         f"Link at {rate:g} Mb/s, {msdu} B, preset {preset}",
-        "distance m", "SNR dB", "BER", "thesis BER", "frame success", "delivery", "Mb/s", "delay ms",
+        "distance m", "SNR dB", "BER", "thesis BER", "frame success", "theory Mb/s", "Mb/s", "delivery",
+        "delay ms",
     )  # fmt: skip
     for row in made.rows:
         rows.add_row(
@@ -37,8 +38,9 @@ def link(
             f"{row.ber:.2e}",
             f"{row.thesis_ber:.3f}",
             f"{row.frame_success:.4f}",
-            f"{row.delivery_ratio:.4f}",
+            f"{row.closed_form_bps / 1e6:.4f}",
             f"{row.throughput_bps / 1e6:.4f}",
+            f"{row.delivery_ratio:.4f}",
             "-" if row.delay_us is None else f"{row.delay_us / 1e3:.2f}",
         )
     stdout().print(rows)

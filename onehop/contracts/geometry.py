@@ -4,15 +4,14 @@ SI units, radians, x forward, y left. Headings are wrapped to (-pi, pi].
 """
 
 import math
-from dataclasses import dataclass
 
 from onehop.contracts import elementary
+from onehop.contracts.values import Value
 
 TAU = 2.0 * math.pi
 
 
-@dataclass(frozen=True, slots=True)
-class Pose:
+class Pose(Value, frozen=True):
     """Position [m] and heading [rad] in the map frame."""
 
     x: float
@@ -20,8 +19,7 @@ class Pose:
     heading: float
 
 
-@dataclass(frozen=True, slots=True)
-class Twist:
+class Twist(Value, frozen=True):
     """Velocity of a unicycle: v [m/s] along its heading, w [rad/s] to the left (thesis eq. 3.3)."""
 
     v: float

@@ -4,7 +4,6 @@ Each is the content of one bus key (topics.py) except Percept and Carriage, whic
 together and take apart. Payloads between robots stay opaque bytes here: only robot_agent knows them.
 """
 
-from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
@@ -13,9 +12,7 @@ import numpy.typing as npt
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.team import Status
-
-WIRE_VERSION = 1
-"""Schema version that every wire message starts with; any other is refused by name."""
+from onehop.contracts.values import Value, Wire
 
 BROADCAST = 0
 """Destination of a frame for everyone in range (robot ids start at 1)."""
@@ -24,8 +21,7 @@ Ranges: TypeAlias = npt.NDArray[np.float32]
 NoteValue: TypeAlias = int | float | str | tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Observation:
+class Observation(Wire, frozen=True):
     """What the world tells robot i at tick k (key obs/<i>).
 
     incarnation: 0 for the first process of this robot, one more for each restart.
@@ -41,8 +37,7 @@ class Observation:
     scan: Ranges
 
 
-@dataclass(frozen=True, slots=True)
-class Reception:
+class Reception(Value, frozen=True):
     """One message that the radio delivered.
 
     source: robot that sent it. service_start_ns: instant at which the source's link layer began to
@@ -61,8 +56,7 @@ class Reception:
     msdu_bytes: int
 
 
-@dataclass(frozen=True, slots=True)
-class Inbox:
+class Inbox(Wire, frozen=True):
     """What the radio delivered to one robot in the tick that ends at time_ns (key rx/<i>)."""
 
     tick: int
@@ -70,8 +64,7 @@ class Inbox:
     receptions: tuple[Reception, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Percept:
+class Percept(Value, frozen=True):
     """Everything that a robot can know at a tick."""
 
     tick: int
@@ -94,8 +87,7 @@ def percept(observation: Observation, inbox: Inbox) -> Percept:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Transmission:
+class Transmission(Value, frozen=True):
     """One message handed to the network card; destination is a robot id or BROADCAST.
 
     msdu_bytes: size that it takes on the air [B], at least len(payload).
@@ -106,16 +98,14 @@ class Transmission:
     msdu_bytes: int
 
 
-@dataclass(frozen=True, slots=True)
-class Note:
+class Note(Value, frozen=True):
     """A structured event for people: kind in snake_case, data sorted by key."""
 
     kind: str
     data: dict[str, NoteValue]
 
 
-@dataclass(frozen=True, slots=True)
-class Action:
+class Action(Wire, frozen=True):
     """Everything that robot i does at tick k (key out/<i>).
 
     speed [m/s], remaining_distance [m]: what the network card may know (routing, thesis eq. p_r).
@@ -131,8 +121,7 @@ class Action:
     notes: tuple[Note, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Presence:
+class Presence(Value, frozen=True):
     """Ground truth of one present robot."""
 
     robot: int
@@ -142,8 +131,7 @@ class Presence:
     held: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Offer:
+class Offer(Value, frozen=True):
     """What one present robot handed to its network card in the last tick."""
 
     robot: int
@@ -152,16 +140,14 @@ class Offer:
     outbox: tuple[Transmission, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Departure:
+class Departure(Value, frozen=True):
     """A robot that left the mission at this tick, and why."""
 
     robot: int
     why: str
 
 
-@dataclass(frozen=True, slots=True)
-class Contact:
+class Contact(Value, frozen=True):
     """A robot that touched something in the last tick; other is a robot id, or 0 for an obstacle."""
 
     robot: int
@@ -170,16 +156,14 @@ class Contact:
     y: float
 
 
-@dataclass(frozen=True, slots=True)
-class Cut:
+class Cut(Value, frozen=True):
     """No frame passes between a robot of side_a and a robot of side_b, either way."""
 
     side_a: tuple[int, ...]
     side_b: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Jam:
+class Jam(Value, frozen=True):
     """Extra noise at receivers inside a disc: centre and radius [m], power at the receiver [dBm]."""
 
     x: float
@@ -188,8 +172,7 @@ class Jam:
     noise_dbm: float
 
 
-@dataclass(frozen=True, slots=True)
-class Truth:
+class Truth(Wire, frozen=True):
     """Ground truth of tick k (key truth): who is where, what is broken, what was offered to the air.
 
     Everything the radio needs for the interval that ends at time_ns is in here, so that radio and
@@ -219,8 +202,7 @@ class Fate(StrEnum):
     SENDER_GONE = "sender gone"
 
 
-@dataclass(frozen=True, slots=True)
-class Verdict:
+class Verdict(Value, frozen=True):
     """What the radio did with one data message, said once, in the tick in which it was settled.
 
     message: sequence number, unique per source. receiver: who got it or should have (a broadcast has
@@ -247,11 +229,11 @@ class Verdict:
     bit_error_rate: float
 
 
-@dataclass(frozen=True, slots=True)
-class Ether:
+class Ether(Wire, frozen=True):
     """What happened on the air in the tick that ends at time_ns (key ether).
 
-    control_bytes: routing bytes sent since the start of the mission, by kind ("rreq", "rrep", ...).
+    control_bytes: routing bytes sent since the start of the mission, by kind ("rreq", "rrep", "rerr",
+        and "source_route" for what MRSR adds to data).
     """
 
     tick: int
@@ -260,16 +242,14 @@ class Ether:
     control_bytes: dict[str, int]
 
 
-@dataclass(frozen=True, slots=True)
-class Carriage:
+class Carriage(Value, frozen=True):
     """What `Radio.carry` returns: inboxes of every present robot, and the record of the tick."""
 
     inboxes: dict[int, Inbox]
     ether: Ether
 
 
-@dataclass(frozen=True, slots=True)
-class Lost:
+class Lost(Value, frozen=True):
     """A robot that did not arrive with the team."""
 
     robot: int
@@ -277,8 +257,7 @@ class Lost:
     why: str
 
 
-@dataclass(frozen=True, slots=True)
-class Reign:
+class Reign(Value, frozen=True):
     """A roster from the moment a robot began to act as its leader."""
 
     at_s: float
@@ -288,8 +267,7 @@ class Reign:
     shape: str
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(Value, frozen=True):
     """How a mission ended (key end): "arrived", "failed" or "aborted", and why."""
 
     outcome: str
@@ -302,8 +280,7 @@ class Outcome:
     collisions: int
 
 
-@dataclass(frozen=True, slots=True)
-class End:
+class End(Wire, frozen=True):
     """World to all: the mission is over (key end). last_tick: the last one that is recorded.
 
     wall_s: wall-clock time of the ticks; it is for people and stays out of the log.
@@ -314,8 +291,7 @@ class End:
     wall_s: float
 
 
-@dataclass(frozen=True, slots=True)
-class RobotProgress:
+class RobotProgress(Value, frozen=True):
     """One line of the progress display; speed [m/s]."""
 
     robot: int
@@ -323,8 +299,7 @@ class RobotProgress:
     status: Status
 
 
-@dataclass(frozen=True, slots=True)
-class Progress:
+class Progress(Wire, frozen=True):
     """World to operator, a few times a second (key progress): how far the mission is."""
 
     tick: int

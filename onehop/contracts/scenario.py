@@ -21,6 +21,7 @@ from onehop.contracts.sections import (
     StartSection,
     TeamSection,
 )
+from onehop.contracts.values import Wire
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,8 +75,7 @@ class Scenario:
                 )
 
 
-@dataclass(frozen=True, slots=True)
-class Briefing:
+class Briefing(Wire, frozen=True):
     """All that a robot is told before it starts (thesis 3.3.2): never the map, never others' poses."""
 
     robot: int
@@ -90,8 +90,7 @@ class Briefing:
     radio: RadioSection
 
 
-@dataclass(frozen=True, slots=True)
-class RadioBriefing:
+class RadioBriefing(Wire, frozen=True):
     """All that the radio proxy is told before it starts. walls: segments x0, y0, x1, y1 [m]."""
 
     seed: int

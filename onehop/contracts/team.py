@@ -1,7 +1,8 @@
 """Words for the state of a team that more than one program speaks: modes, shapes, status."""
 
-from dataclasses import dataclass
 from enum import StrEnum
+
+from onehop.contracts.values import Value
 
 
 class Mode(StrEnum):
@@ -12,6 +13,7 @@ class Mode(StrEnum):
     FOLLOWING = "following"
     NARROW = "narrow"
     BORDER = "border following"
+    GIVING_WAY = "giving way"
     LOST_LEADER = "lost leader"
     ALONE = "alone"
     JOINING = "joining"
@@ -28,8 +30,7 @@ class Shape(StrEnum):
     HEXAGON = "hexagon"
 
 
-@dataclass(frozen=True, slots=True)
-class Status:
+class Status(Value, frozen=True):
     """What a robot says of itself in every action, for people, the referee and the checker.
 
     mode: what it is doing. A robot acts as leader when `leader` is its own id.

@@ -1,50 +1,51 @@
 """Names of the bus keys and of the log channels. They stand here and nowhere else.
 
-Bus keys lie under one mission prefix, so that missions on one machine never hear each other.
+Every process has a name. It hears what lies under `to/<name>`, all of it through one subscription, and
+speaks under `from/<name>`; the world hears all that is said there. Bus keys lie under one mission
+prefix, so that missions on one machine never hear each other.
 """
 
 ROBOT_NAME = "robot-{}"
 WORLD, RADIO, RECORDER, OPERATOR = "world", "radio", "recorder", "operator"
 
 
-def robot_name(robot: int) -> str:
+def robot_name(robot: int | str) -> str:
     """Name of a robot's process, liveliness token and identity: robot-3."""
     return ROBOT_NAME.format(robot)
 
 
-def percept(robot: int | str) -> str:
-    """World to robot: its observation and its inbox of tick k."""
-    return f"percept/{robot}"
+def to(name: str, what: str) -> str:
+    """Key of a message to a process."""
+    return f"to/{name}/{what}"
 
 
-def obs(robot: int | str) -> str:
-    """Log channel of a robot's observation of tick k; on the bus it travels in its percept."""
-    return f"obs/{robot}"
+def by(name: str, what: str) -> str:
+    """Key of a message from a process to the world."""
+    return f"from/{name}/{what}"
 
 
-def rx(robot: int | str) -> str:
-    """Log channel of a robot's inbox of tick k; on the bus it travels in air and in its percept."""
-    return f"rx/{robot}"
+def heard(name: str) -> str:
+    """The expression that a process hears."""
+    return "from/**" if name == WORLD else f"to/{name}/**"
 
 
-def out(robot: int | str) -> str:
-    """Robot to world: its action of tick k."""
-    return f"out/{robot}"
+PERCEPT = "percept"
+"""World to robot: its observation and its inbox of tick k."""
 
+OUT = "out"
+"""Robot to world: its action of tick k."""
 
-def fate(robot: int | str) -> str:
-    """World to robot: a scripted kill, which the robot's process carries out on itself."""
-    return f"fate/{robot}"
-
-
-TRUTH = "truth"
-"""World to radio: ground truth of tick k, and what was offered to the air."""
+FATE = "fate"
+"""World to robot: a scripted kill, which the robot's process carries out on itself."""
 
 AIR = "air"
 """Radio to world: the inboxes of tick k of every present robot, and the record of the tick."""
 
-ETHER = "ether"
-"""Log channel of the radio's verdicts; on the bus they travel in air."""
+RECORD = "record"
+"""World to recorder: all wire messages of one tick."""
+
+RECORDED = "recorded"
+"""Recorder to world: the last tick that is in the file."""
 
 END = "end"
 """World to all: the mission is over, and how."""
@@ -61,6 +62,12 @@ RESTART = "restart"
 RESULT = "result"
 """Recorder to operator: summary of the finished log."""
 
+ALIVE = "alive"
+"""What a process tells itself when another one's liveliness token comes or goes."""
+
+PULSE = "pulse"
+"""What a process tells itself to look at the clock."""
+
 
 def alive(name: str) -> str:
     """Liveliness token of a process."""
@@ -72,13 +79,28 @@ def config(name: str) -> str:
     return f"config/{name}"
 
 
-RECORD = "record"
-"""World to recorder: all wire messages of one tick."""
+TRUTH = "truth"
+"""World to radio, and log channel: ground truth of tick k, and what was offered to the air."""
 
-RECORDED = "recorded"
-"""Recorder to world: the last tick that is in the file."""
+ETHER = "ether"
+"""Log channel of the radio's verdicts; on the bus they travel in air."""
+
+
+def obs(robot: int | str) -> str:
+    """Log channel of a robot's observation of tick k; on the bus it travels in its percept."""
+    return f"obs/{robot}"
+
+
+def rx(robot: int | str) -> str:
+    """Log channel of a robot's inbox of tick k; on the bus it travels in air and in its percept."""
+    return f"rx/{robot}"
+
+
+def out(robot: int | str) -> str:
+    """Log channel of a robot's action of tick k."""
+    return f"out/{robot}"
 
 
 def wire(key: str) -> str:
-    """Log channel of a bus key."""
+    """Name in the file of a log channel."""
     return f"/wire/{key}"

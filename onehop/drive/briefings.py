@@ -1,13 +1,11 @@
 """What radio and recorder are told before they start (a robot's briefing is in contracts)."""
 
-from dataclasses import dataclass
-
 from onehop.contracts.scenario import RadioBriefing, Scenario
+from onehop.contracts.values import Wire
 from world_server.core.walls import WallMap
 
 
-@dataclass(frozen=True, slots=True)
-class LogBriefing:
+class LogBriefing(Wire, frozen=True):
     """What goes into a log before its first tick."""
 
     driver: str

@@ -1,15 +1,18 @@
 """Zenoh as this project uses it: one router (the world), all others clients, everyone with an identity.
 
-The router refuses every put, subscription and query that `_RIGHTS` does not give to the sender's user
-name. Received messages land in one queue per session, as (key without prefix, bytes), in arrival order;
-nothing may depend on that order. Liveliness changes land in the same queue as (key, ALIVE or GONE).
+The router refuses every put, subscription and query that `rights` does not give to the sender's user
+name. A process receives from one channel, as (what, bytes), in arrival order; nothing may depend on that
+order. Liveliness changes come through the same channel. The channel is Zenoh's own: its network thread
+fills it without Python's interpreter lock, and the process's one thread takes from it. A Python callback
+costs a thread switch or two more for each message.
 """
 
 import json
 import os
-import queue
 import secrets
 import tempfile
+import threading
+import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import TracebackType
@@ -23,6 +26,17 @@ from onehop.contracts.errors import MissionError
 ALIVE = b"alive"
 GONE = b"gone"
 
+CHANNEL_MESSAGES = 100_000
+"""Messages that may wait for a process. When there are more its peers wait too: nothing is dropped."""
+
+ROBOT_LINK_BYTES = 48_000
+"""Longest message to or from a robot. Its link is Zenoh's low-latency transport, which writes to the
+socket from the sender's thread (a tick costs a quarter less CPU) but knows no fragments: it would drop
+what is longer without a word."""
+
+PULSE_S = 0.1
+"""How often a process that waits with a time limit looks at the clock."""
+
 CONNECT_TIMEOUT_MS = 60_000
 """How long a client waits for the router to appear."""
 
@@ -34,6 +48,14 @@ ONE_THREAD = (
     "net: (worker_threads: 1))"
 )
 """Zenoh's own threads in each process: one. Its default of several costs 30 % more time a tick."""
+
+_QUIET = {
+    "scouting/multicast/enabled": False,
+    "scouting/gossip/enabled": False,
+    "transport/shared_memory/enabled": False,
+    "transport/unicast/qos/enabled": False,
+}
+"""What nobody here uses. Without priorities a link is of low latency if both of its ends ask for it."""
 
 _PUT, _DELETE = "put", "delete"
 _SUBSCRIBE, _QUERY, _REPLY = "declare_subscriber", "query", "reply"
@@ -51,14 +73,10 @@ class Rights:
 
 def rights(name: str) -> Rights:
     """The table: who may say and hear what."""
-    if name == topics.RADIO:
-        return Rights((topics.AIR,), (topics.TRUTH, topics.END))
+    puts: tuple[str, ...] = (topics.by(name, "*"),)
     if name == topics.RECORDER:
-        return Rights((topics.RECORDED, topics.RESULT), (topics.RECORD, topics.END))
-    if name == topics.OPERATOR:
-        return Rights((topics.CONTROL,), (topics.PROGRESS, topics.RESULT, topics.RESTART, topics.END))
-    robot = name.removeprefix(topics.ROBOT_NAME.format(""))
-    return Rights((topics.out(robot),), (topics.percept(robot), topics.fate(robot), topics.END))
+        puts += (topics.to(topics.OPERATOR, topics.RESULT),)
+    return Rights(puts, (topics.heard(name),))
 
 
 def make_credentials(names: Iterable[str]) -> dict[str, str]:
@@ -69,12 +87,16 @@ def make_credentials(names: Iterable[str]) -> dict[str, str]:
 class Bus:
     """One session on the bus of one mission. Use as a context manager: leaving without close hangs."""
 
-    def __init__(self, session: zenoh.Session, mission: str) -> None:
+    def __init__(self, session: zenoh.Session, mission: str, name: str) -> None:
         self._session = session
         self._mission = mission
-        self._prefix = len(mission) + 1
+        heard = self._key(topics.heard(name))
+        self._prefix = len(heard.removesuffix("**"))
+        self._own = heard.replace("**", topics.WORLD + "/" if name == topics.WORLD else "")
         self._kept: list[Any] = []
-        self.inbox: queue.SimpleQueue[tuple[str, bytes]] = queue.SimpleQueue()
+        self._pulse: threading.Thread | None = None
+        self._closed = threading.Event()
+        self._channel = session.declare_subscriber(heard, zenoh.handlers.FifoChannel(CHANNEL_MESSAGES))
 
     def __enter__(self) -> Self:
         return self
@@ -82,6 +104,7 @@ class Bus:
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self._closed.set()
         self._session.close()  # type: ignore[no-untyped-call]
 
     def _key(self, key: str) -> str:
@@ -95,36 +118,56 @@ class Bus:
             express=express,
         )
         self._kept.append(publisher)
-        return publisher.put
+        return _limited(publisher.put, key) if _is_of_robot(key) else publisher.put
 
-    def subscribe(self, key: str) -> None:
-        """Let the messages of a key (or expression) arrive in the inbox."""
-        inbox, prefix = self.inbox, self._prefix
+    def tell_self(self, what: str, data: bytes = b"") -> None:
+        """Let this process receive a message from itself; it does not leave the process."""
+        self._session.put(self._own + what, data, allowed_destination=zenoh.Locality.SESSION_LOCAL)
 
-        def arrived(sample: zenoh.Sample) -> None:
-            inbox.put((str(sample.key_expr)[prefix:], sample.payload.to_bytes()))
-
-        self._kept.append(self._session.declare_subscriber(self._key(key), arrived))
-
-    def watch(self, key: str) -> None:
-        """Let liveliness changes of a key (or expression) arrive in the inbox, present ones included."""
-        inbox, prefix = self.inbox, self._prefix
+    def watch(self, name: str) -> None:
+        """Receive ("alive/<name>", ALIVE or GONE) for a process, or "*", present ones included."""
+        prefix = len(self._mission) + 1
 
         def changed(sample: zenoh.Sample) -> None:
             state = ALIVE if sample.kind == zenoh.SampleKind.PUT else GONE
-            inbox.put((str(sample.key_expr)[prefix:], state))
+            self.tell_self(str(sample.key_expr)[prefix:], state)
 
-        self._kept.append(
-            self._session.liveliness().declare_subscriber(self._key(key), changed, history=True)
-        )
+        token = self._key(topics.alive(name))
+        self._kept.append(self._session.liveliness().declare_subscriber(token, changed, history=True))
 
     def announce(self, name: str) -> None:
         """Declare this process alive. Do it last: whoever sees the token may send at once."""
         self._kept.append(self._session.liveliness().declare_token(self._key(topics.alive(name))))
 
+    def receive(self) -> tuple[str, bytes]:
+        """The next message or liveliness change, whenever it comes.
+
+        Its name is what the key says after to/<name>/, and for the world after from/.
+        """
+        channel = self._channel
+        sample = channel.try_recv() or channel.recv()
+        return str(sample.key_expr)[self._prefix :], sample.payload.to_bytes()
+
+    def receive_by(self, deadline: float) -> tuple[str, bytes] | None:
+        """The next message; None when there is none by the deadline (time.monotonic() [s])."""
+        if self._pulse is None:
+            self._pulse = threading.Thread(target=self._beat, name="pulse", daemon=True)
+            self._pulse.start()
+        pulse = (self._own + topics.PULSE)[self._prefix :]
+        while True:
+            what, data = self.receive()
+            if what != pulse:
+                return what, data
+            if time.monotonic() >= deadline:
+                return None
+
+    def _beat(self) -> None:
+        while not self._closed.wait(PULSE_S):
+            self.tell_self(topics.PULSE)
+
     def answer(self, key: str, reply: Callable[[str], bytes | None]) -> None:
         """Answer queries on an expression: reply(key) gives the bytes, or None for no answer."""
-        prefix = self._prefix
+        prefix = len(self._mission) + 1
 
         def asked(query: zenoh.Query) -> None:
             with query:
@@ -142,12 +185,22 @@ class Bus:
                 return reply.ok.payload.to_bytes()
         return None
 
-    def receive(self, timeout_s: float) -> tuple[str, bytes] | None:
-        """The next message or liveliness change; None if nothing comes in time."""
-        try:
-            return self.inbox.get(timeout=timeout_s)
-        except queue.Empty:
-            return None
+
+def _is_of_robot(key: str) -> bool:
+    return f"/{topics.robot_name('')}" in key
+
+
+def _limited(put: Callable[[bytes], None], key: str) -> Callable[[bytes], None]:
+    """put for a robot's link. Raises MissionError for a message that does not fit."""
+
+    def put_if_it_fits(data: bytes) -> None:
+        if len(data) > ROBOT_LINK_BYTES:
+            raise MissionError(
+                f"{key}: a message of {len(data)} bytes; a robot's link carries {ROBOT_LINK_BYTES}"
+            )
+        put(data)
+
+    return put_if_it_fits
 
 
 def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | None = None) -> Bus:
@@ -156,12 +209,11 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
         "mode": "router",
         "listen/endpoints": [endpoint],
         "scouting/delay": 0,
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-        "transport/shared_memory/enabled": False,
+        **_QUIET,
+        "transport/unicast/lowlatency": True,
     }
     if credentials is None:
-        return Bus(_open(settings), mission)
+        return Bus(_open(settings), mission, topics.WORLD)
     with tempfile.NamedTemporaryFile("w", prefix="onehop-") as dictionary:  # readable by its owner only
         dictionary.writelines(f"{name}:{word}\n" for name, word in credentials.items())
         dictionary.flush()
@@ -171,7 +223,7 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
             "dictionary_file": dictionary.name,
         }
         settings["access_control"] = _access_control(mission, credentials)
-        return Bus(_open(settings), mission)
+        return Bus(_open(settings), mission, topics.WORLD)
 
 
 def open_client(
@@ -189,14 +241,13 @@ def open_client(
         "connect/exit_on_failure": True,
         "connect/retry": {"period_init_ms": 20, "period_max_ms": 200, "period_increase_factor": 1.5},
         "listen/endpoints": [],
-        "scouting/multicast/enabled": False,
-        "scouting/gossip/enabled": False,
-        "transport/shared_memory/enabled": False,
+        **_QUIET,
+        "transport/unicast/lowlatency": name.startswith(topics.robot_name("")),
         "transport/link/tx/lease": LEASE_MS,
     }
     if password is not None:
         settings["transport/auth/usrpwd"] = {"user": name, "password": password}
-    return Bus(_open(settings), mission)
+    return Bus(_open(settings), mission, name)
 
 
 def _open(settings: Mapping[str, Any]) -> zenoh.Session:
@@ -236,7 +287,7 @@ def _access_control(mission: str, names: Iterable[str]) -> dict[str, Any]:
             rule(name, "ingress", [_PUT, _DELETE], may.puts),
             rule(name, "ingress", [_SUBSCRIBE], may.hears),
             rule(name, "egress", [_PUT, _DELETE], may.hears),
-            rule(name, "egress", [_SUBSCRIBE], _subscribed_by_others(may.puts)),
+            rule(name, "egress", [_SUBSCRIBE], [topics.heard(topics.WORLD), *may.puts[1:]]),
             rule(name, "ingress", [_QUERY], [topics.config(name)]),
             rule(name, "egress", [_REPLY], [topics.config(name)]),
             rule(name, "egress", ["declare_queryable"], [topics.config("*")]),
@@ -253,9 +304,3 @@ def _access_control(mission: str, names: Iterable[str]) -> dict[str, Any]:
         "subjects": subjects,
         "policies": policies,
     }
-
-
-def _subscribed_by_others(keys: Iterable[str]) -> list[str]:
-    """The expressions under which the puts of these keys are subscribed to (they must match exactly)."""
-    stems = [key.partition("/") for key in keys]
-    return [f"{stem}/*" if slash else stem for stem, slash, _ in stems]

@@ -22,7 +22,7 @@ from mcap.stream_reader import StreamReader
 from zstandard import ZstdError
 
 from onehop.contracts.errors import LogError
-from onehop.contracts.messages import WIRE_VERSION
+from onehop.contracts.values import WIRE_VERSION
 from onehop.drive.journal import Digest, WireMessage, canonical_rank
 from onehop.drive.log_writer import MAP_ATTACHMENT, SCENARIO_ATTACHMENT
 from onehop.drive.selection import select, walk

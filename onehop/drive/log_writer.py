@@ -16,7 +16,7 @@ from mcap.writer import CompressionType, Writer
 
 from onehop import __version__
 from onehop.contracts import topics
-from onehop.contracts.messages import WIRE_VERSION
+from onehop.contracts.values import WIRE_VERSION
 from onehop.drive.journal import WireMessage
 from onehop.scenario_file import Bundle
 
@@ -71,6 +71,7 @@ class LogWriter:
 
     def close(self, summary: Mapping[str, Any] | None) -> None:
         """Finish the file; summary is what `onehop run` will print, None if there is none."""
+        self.flush()  # the writer holds messages back, and the outcome must not overtake them
         if summary is not None:
             self._writer.add_metadata("outcome", {"summary": json.dumps(summary, sort_keys=True)})
         self._writer.finish()  # type: ignore[no-untyped-call]

@@ -1,21 +1,44 @@
-"""Several wire messages of one tick as one: inboxes on the air, a percept, a tick for the recorder."""
+"""Several wire messages as one: inboxes on the air, a percept, whole ticks for the recorder."""
 
-import msgpack
+from typing import TypeAlias, TypeVar
+
+import msgspec
 
 from onehop.contracts.errors import DecodeError
+from onehop.drive.codec import REFUSALS
 from onehop.drive.journal import WireMessage
+
+T = TypeVar("T")
+
+Record: TypeAlias = tuple[int, list[WireMessage]]
+"""A tick and messages of it."""
+
+_RECORD: msgspec.msgpack.Decoder[Record] = msgspec.msgpack.Decoder(Record)
+_RECORDS: msgspec.msgpack.Decoder[list[Record]] = msgspec.msgpack.Decoder(list[Record])
 
 
 def pack_record(tick: int, messages: list[WireMessage]) -> bytes:
     """A tick's messages as one payload; the messages themselves stay byte for byte what they were."""
-    packed: bytes = msgpack.packb((tick, messages))
-    return packed
+    return msgspec.msgpack.encode((tick, messages))
 
 
-def unpack_record(data: bytes) -> tuple[int, list[WireMessage]]:
+def unpack_record(data: bytes) -> Record:
     """The inverse of pack_record. Raises DecodeError."""
+    return _unpack(_RECORD, data)
+
+
+def pack_records(records: list[Record]) -> bytes:
+    """Several ticks as one payload."""
+    return msgspec.msgpack.encode(records)
+
+
+def unpack_records(data: bytes) -> list[Record]:
+    """The inverse of pack_records. Raises DecodeError."""
+    return _unpack(_RECORDS, data)
+
+
+def _unpack(decoder: msgspec.msgpack.Decoder[T], data: bytes) -> T:
     try:
-        tick, messages = msgpack.unpackb(data)
-        return int(tick), [(str(key), bytes(value)) for key, value in messages]
-    except (ValueError, TypeError, msgpack.UnpackException) as error:
+        return decoder.decode(data)
+    except REFUSALS as error:
         raise DecodeError(f"record: {error}") from None

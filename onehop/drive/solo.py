@@ -15,13 +15,16 @@ from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Note
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario, robot_briefing
-from robot_agent.core.planning import Progress, make_pathfinder
+from robot_agent.core.planning import Progress, make_pathfinder, nobody
 from robot_agent.core.planning.survey import Survey
 from robot_agent.core.scan import FloatArray
 from world_server.core.laser import Laser
 from world_server.core.motion import Motion
 from world_server.core.placement import start_poses
-from world_server.core.walls import WallMap
+from world_server.core.walls import WallMap, segment_distances
+
+PIECE = 64
+"""Poses of a path whose clearance is measured at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +89,7 @@ def solo(scenario: Scenario, walls: WallMap) -> Solo:
     for tick in range(int(scenario.clock.limit_s * 1000 / scenario.clock.period_ms)):
         scan = laser.scans(poses, looking)[0]
         began = time.perf_counter()
-        guidance = finder.step(Pose(*map(float, poses[0])), scan, frozenset())
+        guidance = finder.step(Pose(*map(float, poses[0])), scan, nobody)
         took = time.perf_counter() - began
         notes += [(tick, note) for note in guidance.notes]
         if finder.survey is not None and finder.survey is not seen:
@@ -110,8 +113,24 @@ def solo(scenario: Scenario, walls: WallMap) -> Solo:
         plan_ms=np.array(plan_s) * 1e3,
         follow_us=np.array(follow_s) * 1e6,
         contacts=contacts,
-        min_clearance=float(walls.clearance(track[:, :2]).min()),
+        min_clearance=_least_clearance(walls, track[:, :2]),
     )
+
+
+def _least_clearance(walls: WallMap, way: FloatArray) -> float:
+    """Least distance between a way, (n, 2), and the walls [m].
+
+    Piece by piece: if all of a piece lies within r of its first point, no wall matters to it that is
+    2 r farther from that point than the nearest one.
+    """
+    least = math.inf
+    for first in range(0, len(way), PIECE):
+        piece = way[first : first + PIECE]
+        reach = 2.0 * float(np.hypot(*(piece - piece[0]).T).max())
+        distances = segment_distances(piece[:1], walls.segments)[0]
+        near = walls.segments[distances <= distances.min(initial=math.inf) + reach]
+        least = min(least, float(replace(walls, segments=near).clearance(piece).min()))
+    return least
 
 
 def _alone(scenario: Scenario) -> Scenario:

@@ -4,6 +4,7 @@ import json
 import shutil
 import signal
 import tempfile
+import time
 import uuid
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -69,8 +70,6 @@ def _run_once(
     if bus is None:
         return None
     with bus:
-        for key in (topics.PROGRESS, topics.RESULT, topics.RESTART, topics.END):
-            bus.subscribe(key)
         return _Watch(order, family, bus, show).until_end()
 
 
@@ -101,7 +100,7 @@ class _Watch:
         self._end: End | None = None
         self._result: dict[str, Any] | None = None
         self._interrupted = False
-        self._control = bus.publisher(topics.CONTROL)
+        self._control = bus.publisher(topics.by(topics.OPERATOR, topics.CONTROL))
 
     def until_end(self) -> dict[str, Any]:
         previous = {
@@ -124,27 +123,27 @@ class _Watch:
     def _watch(self) -> None:
         waited_s = 0.0
         while self._result is None:
-            received = self._bus.receive(POLL_S)
+            received = self._bus.receive_by(time.monotonic() + POLL_S)
             if received is not None:
                 self._take(*received)
                 continue
-            if self._family.died(topics.WORLD) and self._bus.inbox.empty():
+            if self._family.died(topics.WORLD):
                 return
             if self._end is not None:
                 waited_s += POLL_S
                 if self._family.died(topics.RECORDER) or waited_s > RESULT_S:
                     return
 
-    def _take(self, key: str, data: bytes) -> None:
-        if key == topics.PROGRESS:
+    def _take(self, what: str, data: bytes) -> None:
+        if what == topics.PROGRESS:
             progress = decode(Progress, data)
             self._tick = progress.tick
             self._show(progress)
-        elif key == topics.RESTART:
+        elif what == topics.RESTART:
             self._family.start_robot(int(data))
-        elif key == topics.END:
+        elif what == topics.END:
             self._end = decode(End, data)
-        elif key == topics.RESULT:
+        elif what == topics.RESULT:
             self._result = json.loads(data)
 
     def _summary(self) -> dict[str, Any]:

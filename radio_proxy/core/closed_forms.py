@@ -1,7 +1,8 @@
 """What theory says of saturated stations: Bianchi's DCF model, and one link under fading.
 
 G. Bianchi, "Performance analysis of the IEEE 802.11 distributed coordination function", IEEE JSAC 18(3),
-2000, eq. 7 to 17. The fading forms follow radio.md. They are what the event simulation is held against.
+2000, eq. 7 to 17. The fading forms are sums over the attempts of one frame. The event simulation is held
+against them, and the tables of `onehop link` and `onehop saturate` show them beside it.
 """
 
 import math
@@ -68,16 +69,8 @@ def frame_probability(budget: LinkBudget, snr_db: float, rate_mbps: float, size_
     return total / weight
 
 
-def threshold_probability(budget: LinkBudget, snr_db: float) -> float:
-    """P(one frame reaches the receive threshold) at a mean SNR."""
-    if budget.shadowing_db == 0.0:
-        return 1.0 if snr_db >= budget.receive_threshold_db else 0.0
-    margin = (snr_db - budget.receive_threshold_db) / budget.shadowing_db
-    return 0.5 * math.erfc(-margin / math.sqrt(2.0))
-
-
 class SaturatedLink:
-    """One sender that always has a message, alone on the air, behind a lossy link (radio.md)."""
+    """One sender that always has a message, alone on the air, behind a lossy link."""
 
     def __init__(self, timing: Timing, msdu_bytes: int, retry_limit: int, rts_cts: bool = True) -> None:
         self._timing = timing

@@ -25,12 +25,13 @@ class Frame:
     """One MSDU for one hop. receiver: station index or EVERYONE; packet: opaque to this layer.
 
     service_start: when it became the head of its queue [ns]. sinr_db, cause: of the last frame of its
-    exchange that was judged at a receiver.
+    exchange that was judged at a receiver. urgent: a routing packet, served before data.
     """
 
     receiver: int
     msdu_bytes: int
     packet: object
+    urgent: bool = False
     service_start: int = -1
     attempts: int = 0
     received: bool = False
@@ -40,13 +41,15 @@ class Frame:
 
 @dataclass(slots=True, eq=False)
 class Station:
-    """A network card. slots: backoff left. access: when it will speak, NEVER while frozen [ns].
+    """A network card. urgent, queue: routing packets and data that wait, each first in, first out.
 
+    slots: backoff left. access: when it will speak, NEVER while frozen [ns].
     idle_start: from when its DIFS counts [ns]. fresh: its head found the medium idle, so it has drawn
     no backoff yet. gone: its robot left; events that still name it are void.
     """
 
     index: int
+    urgent: deque[Frame] = field(default_factory=deque)
     queue: deque[Frame] = field(default_factory=deque)
     frame: Frame | None = None
     slots: int = 0
@@ -67,6 +70,7 @@ class Contention:
         self._medium = medium
         self._draws = draws
         self._sense_db = medium.field.budget.carrier_sense_db
+        self._difs, self._slot = timing.difs, timing.slot
         self._waiting: list[Station] = []
 
     def join_with_frame(self, station: Station, now: int, hold_back: bool) -> None:
@@ -108,30 +112,34 @@ class Contention:
 
         A station about to speak within its turnaround cannot sense it in time and collides.
         """
-        if self.next_access == NEVER and self.next_station is None:
+        if self.next_station is None:
             return
         row, sense_db = emission.row, self._sense_db
         committed = now + self._timing.turnaround
-        self.next_access, self.next_station = NEVER, None
+        next_access, next_station = NEVER, None
         for station in self._waiting:
             access = station.access
             if access == NEVER:
                 continue
             if access > committed and row[station.index] >= sense_db:
                 self._freeze(station, emission, now)
-            elif access < self.next_access:
-                self.next_access, self.next_station = access, station
+            elif access < next_access:
+                next_access, next_station = access, station
+        self.next_access, self.next_station = next_access, next_station
 
     def on_idle(self, now: int, answer: list[float] | None = None) -> None:
         """An emission has ended; whoever now finds the medium idle goes on.
 
         answer: how an answer that follows after a SIFS will be heard; who senses it does not even start.
         """
-        on_air, sense_db = self._medium.on_air, self._sense_db
+        medium, sense_db = self._medium, self._sense_db
+        if answer is None and not medium.on_air and medium.reserved_to <= now:
+            self._resume_all(now)
+            return
         for station in self._waiting:
             if station.access != NEVER or (answer is not None and answer[station.index] >= sense_db):
                 continue
-            if not on_air or not self._medium.is_busy(station.index):
+            if not medium.is_busy(station.index):
                 self._resume(station, now)
 
     def on_reservation_unused(self, now: int) -> None:
@@ -154,19 +162,31 @@ class Contention:
         if not self._medium.is_busy(station.index):
             self._resume(station, now)
 
+    def _resume_all(self, now: int) -> None:
+        """The medium is idle everywhere and nobody has reserved it: `_resume` for all that froze."""
+        next_access, next_station = self.next_access, self.next_station
+        after_difs, slot = now + self._difs, self._slot
+        for station in self._waiting:
+            if station.access == NEVER:
+                station.idle_start = now
+                station.access = access = after_difs + station.slots * slot
+                if access < next_access:
+                    next_access, next_station = access, station
+        self.next_access, self.next_station = next_access, next_station
+
     def _resume(self, station: Station, now: int) -> None:
         start = now
         if self._medium.reserved_to > now:
             start = self._medium.reserved_until(station.index, now)
         station.idle_start = start
-        station.access = access = start + self._timing.difs + station.slots * self._timing.slot
+        station.access = access = start + self._difs + station.slots * self._slot
         if access < self.next_access:
             self.next_access, self.next_station = access, station
 
     def _freeze(self, station: Station, emission: Emission, now: int) -> None:
-        elapsed = now - station.idle_start - self._timing.difs
+        elapsed = now - station.idle_start - self._difs
         if elapsed > 0:
-            station.slots -= elapsed // self._timing.slot
+            station.slots -= elapsed // self._slot
         if station.fresh and emission.source != station.index:
             station.fresh = False
             station.slots = self._draws.slots(self._timing.window(0))

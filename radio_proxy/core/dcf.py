@@ -2,6 +2,10 @@
 
 Here is also the event queue that everything above shares. Stations are indices.
 
+A broadcast is sent once, without RTS, ACK or repetition (9.2.7): beacons of two teams, and requests that
+neighbours pass on, may collide and are then lost. That is the standard's way, and nothing above relies
+on any single one: beacons come every period, requests are jittered and repeated.
+
 An exchange that nobody can disturb is taken in three events instead of eight: every station senses both
 of its ends, nothing else is on the air, nobody is about to speak, and it ends before the horizon. Its
 frames are judged as ever; only the gaps of a SIFS, in which nobody may speak, are not played.
@@ -103,11 +107,17 @@ class Dcf:
                 event(argument, time_ns)
 
     def enqueue(self, index: int, frame: Frame, now: int, hold_back: bool) -> bool:
-        """Give a frame to a card; False when its queue is full. hold_back: draw a backoff anyway."""
+        """Give a frame to a card; False when its queue is full. hold_back: draw a backoff anyway.
+
+        Routing packets wait before data, as in the card of Das, Perkins and Royer, "Performance
+        comparison of two on-demand routing protocols for ad hoc networks", INFOCOM 2000, section IV:
+        behind data a request would still lie here when the patience with its answer is over.
+        """
         station = self._stations[index]
-        if len(station.queue) + (station.frame is not None) >= self._queue_frames:
+        waiting = len(station.urgent) + len(station.queue)
+        if waiting + (station.frame is not None) >= self._queue_frames:
             return False
-        station.queue.append(frame)
+        (station.urgent if frame.urgent else station.queue).append(frame)
         if station.frame is None:
             self._serve(station, now, hold_back)
         return True
@@ -120,11 +130,11 @@ class Dcf:
             self._contention.leave(station)
         self._stations[index] = Station(index)
         head = [] if station.frame is None else [station.frame]
-        return head + list(station.queue)
+        return [*head, *station.urgent, *station.queue]
 
     def _serve(self, station: Station, now: int, hold_back: bool) -> None:
         """The head of the queue comes into service; it waits out a backoff that is still running."""
-        station.frame = frame = station.queue.popleft()
+        station.frame = frame = (station.urgent or station.queue).popleft()
         frame.service_start = now
         self._listener.on_service(station.index, frame, now)
         if not station.contending:
@@ -337,5 +347,5 @@ class Dcf:
         return frame
 
     def _serve_next(self, station: Station, now: int) -> None:
-        if station.frame is None and station.queue:
+        if station.frame is None and (station.urgent or station.queue):
             self._serve(station, now, hold_back=True)

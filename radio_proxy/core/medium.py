@@ -9,7 +9,7 @@ at mean power too, because beyond carrier sense only they matter, and a draw for
 every frame would cost more than the rest of the model.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from onehop.contracts import elementary
 from onehop.contracts.messages import Fate
@@ -28,7 +28,7 @@ class Emission:
     source: int
     row: list[float]
     fade_db: float | None
-    overlaps: list[list[float]] = field(default_factory=list)
+    overlaps: tuple[list[float], ...] = ()
 
 
 @dataclass(slots=True, eq=False)
@@ -62,8 +62,8 @@ class Medium:
         """Put a frame on the air; it and everything in flight now disturb each other."""
         emission = Emission(source, self.field.row(source), fade_db)
         for other in self.on_air:
-            other.overlaps.append(emission.row)
-            emission.overlaps.append(other.row)
+            other.overlaps += (emission.row,)
+            emission.overlaps += (other.row,)
         self.on_air.append(emission)
         return emission
 
@@ -73,7 +73,10 @@ class Medium:
 
     def is_busy(self, station: int) -> bool:
         """Physical carrier sense (802.11-1999, 15.4.8.4, mode 2: jams carry no DSSS signal)."""
-        return any(emission.row[station] >= self._sense_db for emission in self.on_air)
+        for emission in self.on_air:  # noqa: SIM110 (any() makes a generator of what is mostly empty)
+            if emission.row[station] >= self._sense_db:
+                return True
+        return False
 
     def reserve(
         self, emission: Emission, source: int, receiver: int, until: int, now: int
@@ -114,7 +117,9 @@ class Medium:
         mean_db = emission.row[station]
         if mean_db <= SILENT_DB:
             return Fate.BELOW_THRESHOLD, SILENT_DB
-        fade_db = self.fade_db() if emission.fade_db is None else emission.fade_db
+        fade_db = emission.fade_db
+        if fade_db is None:
+            fade_db = self._sigma_db * self._draws.normal() if self._sigma_db else 0.0
         alone_db = mean_db + fade_db - self.field.noise_rise_db[station]
         sinr_db = alone_db
         if emission.overlaps:

@@ -139,6 +139,7 @@ class Field:
         self._rows: dict[int, list[float]] = {}
         self._sensed_by_all: dict[int, bool] = {}
         self._delays: dict[tuple[int, int], int] = {}
+        self._farthest: dict[int, float] = {}
         self._cells: dict[tuple[int, int], list[tuple[int, float, float]]] = {}
         self._cuts: tuple[Cut, ...] = ()
         self.noise_rise_db: list[float] = [0.0] * self._count
@@ -195,15 +196,24 @@ class Field:
 
     def farthest(self, sender: int) -> float:
         """Distance from `sender` to the farthest robot that hears it [m]."""
-        row = self.row(sender)
-        heard = [self.distance(sender, i) for i in self._place if i != sender and row[i] > SILENT_DB]
-        return max(heard, default=0.0)
+        farthest = self._farthest.get(sender)
+        if self._stale or farthest is None:
+            row = self.row(sender)
+            x, y = self._place[sender]
+            farthest = max(
+                math.hypot(there_x - x, there_y - y)
+                for i, (there_x, there_y) in self._place.items()
+                if row[i] > SILENT_DB
+            )
+            self._farthest[sender] = farthest
+        return farthest
 
     def _place_robots(self) -> None:
         self._stale = False
         self._rows = {}
         self._sensed_by_all = {}
         self._delays = {}
+        self._farthest = {}
         self._cells = {}
         self._place = {}
         reach = self.budget.reach

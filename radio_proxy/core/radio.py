@@ -2,6 +2,11 @@
 
 Here messages meet robots: who is present, what they offer, what reaches them, and what is on record
 about it. The link lies in dcf.py and medium.py, the routing in routing/.
+
+What routing costs is counted as by J. Broch et al., "A performance comparison of multi-hop wireless ad
+hoc network routing protocols", MobiCom 1998, 5.2 and 5.3: every hop of a routing packet once, IP header
+included, and apart from them ("source_route") the bytes that a source route adds to each hop of a data
+message. Repetitions, RTS, CTS and ACK are the link's business and not in it.
 """
 
 from collections.abc import Callable
@@ -111,6 +116,7 @@ class Radio:
         self._verdicts: list[Verdict] = []
         self._arrivals: list[tuple[int, int, int, int, Reception]] = []
         self._control_bytes: dict[str, int] = {}
+        self._reported_bytes: dict[str, int] = {}
 
     def carry(self, truth: Truth) -> Carriage:
         """What reaches whom in the tick that ends at truth.time_ns, and what became of the rest."""
@@ -140,7 +146,9 @@ class Radio:
                 inboxes[robot] = Inbox(tick, time_ns, tuple(got[robot]))
         verdicts = tuple(self._verdicts)
         self._verdicts = []
-        return Carriage(inboxes, Ether(tick, time_ns, verdicts, self._control_bytes))
+        if self._control_bytes != self._reported_bytes:
+            self._reported_bytes = dict(sorted(self._control_bytes.items()))
+        return Carriage(inboxes, Ether(tick, time_ns, verdicts, self._reported_bytes))
 
     def _welcome(self, truth: Truth, now: int) -> None:
         """Cards of robots that left (or came back as another process) die; new ones start empty."""
@@ -184,15 +192,15 @@ class Radio:
     def send(
         self, robot: int, packet: object, next_hop: int, size_bytes: int, kind: str, now: int
     ) -> bool:
-        """Queue a packet for one hop; control packets count when they are queued."""
+        """Queue a packet for one hop; what routing adds to the air counts when it is queued."""
         receiver = EVERYONE if next_hop == BROADCAST else self._index[next_hop]
-        frame = Frame(receiver, size_bytes, packet)
+        frame = Frame(receiver, size_bytes, packet, urgent=kind != "")
         if not self._dcf.enqueue(self._index[robot], frame, now, self._crowded):
             return False
-        if kind:
-            counted = dict(self._control_bytes)
-            counted[kind] = counted.get(kind, 0) + size_bytes
-            self._control_bytes = dict(sorted(counted.items()))
+        if isinstance(packet, Data):
+            kind, size_bytes = "source_route", size_bytes - packet.message.msdu_bytes
+        if size_bytes:
+            self._control_bytes[kind] = self._control_bytes.get(kind, 0) + size_bytes
         return True
 
     def deliver(self, data: Data, now: int) -> None:
@@ -274,16 +282,16 @@ class Radio:
             self._note_link(packet, frame)
             packet = packet.moved(holder, frame.attempts)
         else:
-            self._overhear(packet, sender, holder)
+            self._overhear(packet, sender, holder, now)
         self._cards[holder].router.on_packet(packet, self._robots[sender], now)
 
-    def _overhear(self, packet: object, sender: int, holder: int) -> None:
+    def _overhear(self, packet: object, sender: int, holder: int, now: int) -> None:
         """Control packets are heard by everyone whose mean SNR allows it."""
-        row = self._field.row(sender)
+        row, source = self._field.row(sender), self._robots[sender]
         threshold_db = self._field.budget.receive_threshold_db
         for robot in sorted(self._cards):
             if robot != holder and threshold_db <= row[self._index[robot]] < OWN_DB:
-                self._cards[robot].router.on_overheard(packet)
+                self._cards[robot].router.on_overheard(packet, source, now)
 
     def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:
         robot = self._robots[sender]
@@ -305,6 +313,8 @@ class Radio:
         bits = 8 * (self._timing.mac_header_bytes + frame.msdu_bytes)
         rate_mbps = self._timing.basic_rate_mbps
         source = self._robots[sender]
+        if not isinstance(packet, Data):
+            self._cards[source].router.on_broadcast(packet, now)
         for robot in sorted(self._cards):
             if robot == source:
                 continue

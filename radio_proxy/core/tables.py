@@ -2,10 +2,16 @@
 
 from dataclasses import dataclass
 
-from onehop.contracts.airtime import ideal_throughput_bps, threshold_bps
+from onehop.contracts.airtime import (
+    ACK_BYTES,
+    BASIC_RATE_MBPS,
+    RTS_BYTES,
+    ideal_throughput_bps,
+    threshold_bps,
+)
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss, printed_throughput_bps
-from radio_proxy.core.closed_forms import bianchi_normalized, frame_probability
+from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized, frame_probability
 from radio_proxy.core.error_rates import bit_error_rate, thesis_ber
 from radio_proxy.core.propagation import link_budget
 from radio_proxy.core.saturation import Saturation, pair, ring
@@ -15,8 +21,8 @@ from radio_proxy.core.saturation import Saturation, pair, ring
 class LinkRow:
     """One distance. snr_db: mean; ber: at that SNR, thesis_ber: by eq. 3.24, 3.25 read literally.
 
-    frame_success: P(a data frame gets through) over the fading. The rest is measured on one saturated
-    sender; delay_us is None when nothing arrives.
+    frame_success: P(a data frame gets through) over the fading. closed_form_bps: throughput of one
+    saturated sender by theory. The rest is measured on it; delay_us is None when nothing arrives.
     """
 
     distance_m: float
@@ -24,6 +30,7 @@ class LinkRow:
     ber: float
     thesis_ber: float
     frame_success: float
+    closed_form_bps: float
     delivery_ratio: float
     throughput_bps: float
     delay_us: float | None
@@ -75,16 +82,32 @@ def _link_row(
     tally = Saturation(load, timing, budget, seed, section.retry_limit, per_exchange).run(seconds)
     delivered = tally.delivered[0]
     settled = delivered + tally.given_up
+    success = frame_probability(budget, snr_db, section.rate_mbps, size_bytes)
     return LinkRow(
         distance_m=distance,
         snr_db=snr_db,
         ber=bit_error_rate(section.rate_mbps, snr_db),
         thesis_ber=thesis_ber(snr_db, 8 * msdu_bytes),
-        frame_success=frame_probability(budget, snr_db, section.rate_mbps, size_bytes),
+        frame_success=success,
+        closed_form_bps=_closed_form_bps(section, snr_db, msdu_bytes, success),
         delivery_ratio=delivered / settled if settled else 0.0,
         throughput_bps=8.0 * msdu_bytes * delivered / seconds,
         delay_us=tally.delay / delivered / 1000.0 if delivered else None,
     )
+
+
+def _closed_form_bps(
+    section: RadioSection, snr_db: float, msdu_bytes: int, data_success: float
+) -> float:
+    """Throughput of one saturated sender by the sum over its attempts."""
+    budget, rts_cts = link_budget(section), msdu_bytes > section.rts_threshold_bytes
+    theory = SaturatedLink(dsss(section), msdu_bytes, section.retry_limit, rts_cts)
+    if section.fading == "exchange":
+        return 1e6 * theory.one_draw_per_exchange(data_success)[1]
+    rts, ack = (
+        frame_probability(budget, snr_db, BASIC_RATE_MBPS, size) for size in (RTS_BYTES, ACK_BYTES)
+    )
+    return 1e6 * theory.one_draw_per_frame(rts, ack, data_success, ack)[1]
 
 
 def saturation_table(

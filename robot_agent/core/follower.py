@@ -18,6 +18,7 @@ from onehop.contracts import elementary
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import GainsSection, RobotSection
+from robot_agent.core.lane import DrawAside
 from robot_agent.core.pursuit import Pursuit
 from robot_agent.core.scan import Fan
 from robot_agent.core.steering import LOOKAHEAD, Steering
@@ -44,6 +45,9 @@ REACTION = 0.4
 STUCK_TICKS = 20
 """Decisions, one in two ticks, without getting anywhere after which a robot backs out of a jam."""
 
+GETTING_ANYWHERE = 0.004
+"""A robot that moved less between two decisions is getting nowhere [m]: 4 cm/s, or it only turns."""
+
 
 class Follower:
     """Drives one robot to its slot. One instance for the life of a robot."""
@@ -56,11 +60,13 @@ class Follower:
         self._gains = gains
         self._steering = Steering(body, fan)
         self._pursuit = Pursuit(self._steering)
+        self._aside = DrawAside(body, gains, self._steering)
         self._dodge = dodge
         self._dodges = 0
         self._blocked = 0
         self._clear_for = 0
         self._idle = 0
+        self._stood_at = (0.0, 0.0)
         self._side = 0
         self._escape = 0
         self._escape_side = 1
@@ -71,6 +77,11 @@ class Follower:
     def halt(self) -> None:
         """Forget the obstacle in the way: the robot has another part now."""
         self.border, self._blocked, self._idle, self._side, self._escape = False, 0, 0, 0, 0
+
+    def draw_aside(self, pose: Pose, scan: Ranges, lane: Sequence[tuple[float, float]]) -> Twist:
+        """Twist for this tick while the leader wants a lane kept clear."""
+        self.halt()
+        return self._aside.step(pose, scan, lane)
 
     def step(
         self,
@@ -176,11 +187,12 @@ class Follower:
         if self.border and self._side == 0:
             self._side = 1 if direction >= bearing else -1
         speed = min(k_rho * pace, self._body.max_speed, max(0.0, free) / REACTION)
-        facing = elementary.cos(direction)
-        if speed * facing * facing < 0.05:
+        here = (pose.x, pose.y)
+        if math.dist(here, self._stood_at) < GETTING_ANYWHERE:
             self._stuck()
         else:
             self._idle = max(0, self._idle - 2)
+        self._stood_at = here
         self._held = pose.heading + direction, speed
         return self._steer(direction, speed)
 

@@ -19,7 +19,8 @@ from onehop.contracts.scenario import Briefing
 from onehop.contracts.sections import GainsSection
 from onehop.contracts.team import Mode
 from robot_agent.core.formation import formation, width
-from robot_agent.core.mates import Lookout
+from robot_agent.core.lane import LaneRequest
+from robot_agent.core.mates import Lookout, painted
 from robot_agent.core.messages import Phase
 from robot_agent.core.modes import Event
 from robot_agent.core.planning import Guidance, Pathfinder, Progress
@@ -28,6 +29,7 @@ from robot_agent.core.scan import Fan
 from robot_agent.core.standing import NANOSECONDS
 from robot_agent.core.steering import LOOKAHEAD, Steering
 from robot_agent.core.tracking import turn_towards
+from robot_agent.core.trail import Trail
 
 PathfinderMaker = Callable[[Briefing, Pose, np.random.Generator], Pathfinder]
 
@@ -36,9 +38,6 @@ ALIGNED = 0.05
 
 MATE_TOLERANCE = 1.0
 """A round thing this near to where a follower can be by its last report is that follower [m]."""
-
-TRAIL_STEP, TRAIL_POINTS = 1.0, 24
-"""Spacing [m] and number of the points of its way that a leader tells."""
 
 WIDEST_PASSAGE = 9.0
 """Passages wider than this never make a column, whatever the shape [m]: almost the laser's range."""
@@ -73,9 +72,10 @@ class Leader:
         self._rng = rng
         self._lookout = Lookout(briefing.body, fan)
         self._steering = Steering(briefing.body, fan)
+        self._request = LaneRequest(fan, briefing.period_ns / NANOSECONDS)
         self._period = briefing.period_ns / NANOSECONDS
         self._pathfinder: Pathfinder | None = None
-        self.trail: list[tuple[float, float]] = []
+        self.trail = Trail()
         self.remaining = 0.0
         self.notes: tuple[Note, ...] = ()
         self._narrow_for = 0.0
@@ -86,16 +86,17 @@ class Leader:
 
     def begin(self) -> None:
         """A leadership ended; the next one starts with a new pathfinder and a new trail."""
-        if self.trail:
+        if self.trail.points:
             self._pathfinder = None
-            self.trail.clear()
+            self.trail = Trail()
+            self._request.begin()
             self._still_for = self._unjam = self._narrow_for = 0.0
 
     def step(self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float) -> Twist:
         """Twist for this tick; tells the protocol of narrow passages and of the end of the way."""
         goal, body = self._briefing.goal, self._briefing.body
         self.notes = ()
-        self._mark(pose)
+        self.trail.mark(pose)
         if protocol.mode is Mode.SETUP:
             bearing = wrap_angle(elementary.atan2(goal.y - pose.y, goal.x - pose.x) - pose.heading)
             return turn_towards(bearing, self._gains, body) if abs(bearing) >= ALIGNED else STANDSTILL
@@ -104,15 +105,21 @@ class Leader:
         if self._pathfinder is None:
             self._pathfinder = self._make_pathfinder(self._briefing, pose, self._rng)
         mates = self._mates(protocol, now_ns, pose, scan)
-        guidance = self._pathfinder.step(pose, scan, mates)
+        guidance = self._pathfinder.step(pose, painted(scan, mates), frozenset)
         self.notes = guidance.notes
         self.remaining = guidance.remaining
         if guidance.progress is not Progress.DRIVING:
             protocol.phase = Phase.FINAL
+            protocol.keep_clear((), False)
             protocol.fire(Event.ARRIVED)
             protocol.note("arrived" if guidance.progress is Progress.ARRIVED else "no_way")
             return STANDSTILL
         self._watch_passage(protocol, guidance.passage)
+        if protocol.open:
+            say = self._request.watch(pose, scan, mates, guidance.waypoint)
+            protocol.keep_clear(self._request.lane, say)
+            if self._request.wait:
+                return Twist(0.0, guidance.twist.w)
         if self._jammed(pose, nearest):
             return self._around(pose, scan, guidance)
         return self._waiting(protocol, guidance.twist)
@@ -127,21 +134,13 @@ class Leader:
         places = [(report.pose.x, report.pose.y) for report in leadership.reports.values()]
         return self._lookout.beams(pose, scan, places, reach)
 
-    def _mark(self, pose: Pose) -> None:
-        """Remember the way."""
-        trail = self.trail
-        if not trail or math.hypot(pose.x - trail[-1][0], pose.y - trail[-1][1]) >= TRAIL_STEP:
-            trail.append((pose.x, pose.y))
-            del trail[:-TRAIL_POINTS]
-
     def _watch_passage(self, protocol: Protocol, passage: float) -> None:
         """Narrow and back: column while the passage is too tight for the shape (thesis 3.3.1)."""
         team, body = self._briefing.team, self._briefing.body
         if len(protocol.members) < 3:
             protocol.narrow = False
             return
-        needed = width(formation(protocol.members, False, team.spacing)) + 4.0 * body.radius
-        if 2.0 * body.radius < passage < min(needed, WIDEST_PASSAGE):
+        if 2.0 * body.radius < passage < WIDEST_PASSAGE and passage < self._needed(protocol):
             self._wide_for = 0.0
             self._narrow_for += self._period
             if not protocol.narrow and self._narrow_for >= NARROW_AFTER:
@@ -154,6 +153,11 @@ class Leader:
         if protocol.narrow and self._wide_for * body.leader_speed > column:
             protocol.narrow = False
             protocol.note("wide", passage=passage)
+
+    def _needed(self, protocol: Protocol) -> float:
+        """Free width that the shape of the team needs [m]."""
+        shape = formation(protocol.members, False, self._briefing.team.spacing)
+        return width(shape) + 4.0 * self._briefing.body.radius
 
     def _jammed(self, pose: Pose, nearest: float) -> bool:
         """Whether the leader stands among its mates for too long, or is still on its way out."""

@@ -7,7 +7,7 @@ from robot_agent.core.messages import Phase
 class Link:
     """What a follower knows of its leader: the last command, and the throughput of the link."""
 
-    __slots__ = ("heard_ns", "narrow", "next_ns", "phase", "pose", "throughput_bps", "trail")
+    __slots__ = ("heard_ns", "lane", "narrow", "next_ns", "phase", "pose", "throughput_bps", "trail")
 
     def __init__(self, now_ns: int) -> None:
         self.heard_ns = now_ns
@@ -16,4 +16,5 @@ class Link:
         self.narrow = False
         self.pose: Pose | None = None
         self.trail: tuple[tuple[float, float], ...] = ()
+        self.lane: tuple[tuple[float, float], ...] = ()
         self.throughput_bps = 0.0

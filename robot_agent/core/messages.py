@@ -2,7 +2,7 @@
 
 One msgpack array a message: [schema, kind, fields...]. Nothing is coerced; whatever is not exactly one
 of these messages raises DecodeError, which the receiver counts and drops. Lengths are in centimetres as
-integers inside a trail only, so that a Next of a large team stays within one MSDU of 800 B.
+integers inside a trail and a lane only, so that a Next of a large team stays within one MSDU of 800 B.
 """
 
 import math
@@ -17,7 +17,7 @@ from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
 from robot_agent.core.roster import Roster
 
-SCHEMA = 1
+SCHEMA = 2
 """Version of the team's messages; any other is refused."""
 
 MAX_EPOCH = 2**31
@@ -28,11 +28,15 @@ MAX_COORDINATE = 1e7
 
 
 class Order(StrEnum):
-    """The modes that a leader commands (thesis Algorithm 1, step 2); Lost_Leader needs no message."""
+    """The modes that a leader commands (thesis Algorithm 1, step 2); Lost_Leader needs no message.
+
+    Make room is ours (lane.py).
+    """
 
     NEXT = "next"
     LOST_FOLLOWER = "lost follower"
     NARROW = "narrow"
+    MAKE_ROOM = "make room"
 
 
 class Phase(StrEnum):
@@ -48,7 +52,8 @@ class Command:
     """Next, Lost_Follower or Narrow: the roster, the shape (narrow or not) and the leader's pose.
 
     sequence: counts a leader's commands; an acknowledgement names it. lost: ids given up with this
-    roster. trail: where the leader came from, oldest first [m]; empty in profile `thesis`.
+    roster. trail: where the leader came from, oldest first [m]; empty in profile `thesis`. lane: the
+    two ends of the piece of its way that is to be kept clear [m]; empty when none is.
     """
 
     order: Order
@@ -59,6 +64,7 @@ class Command:
     pose: Pose
     lost: tuple[int, ...]
     trail: tuple[tuple[float, float], ...]
+    lane: tuple[tuple[float, float], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,11 +131,15 @@ def _pose_fields(pose: Pose) -> Fields:
     return [pose.x, pose.y, pose.heading]
 
 
+def _centimetres(points: tuple[tuple[float, float], ...]) -> list[int]:
+    return [round(100.0 * value) for point in points for value in point]
+
+
 def _encode_command(message: Command) -> tuple[str, Fields]:
-    trail = [round(100.0 * value) for point in message.trail for value in point]
     return "command", [
         message.order.value, message.roster.epoch, message.roster.members, message.sequence,
-        message.phase.value, message.narrow, *_pose_fields(message.pose), message.lost, trail,
+        message.phase.value, message.narrow, *_pose_fields(message.pose), message.lost,
+        _centimetres(message.trail), _centimetres(message.lane),
     ]  # fmt: skip
 
 
@@ -149,7 +159,7 @@ def _encode_join(message: Join) -> tuple[str, Fields]:
 
 
 def _decode_command(fields: Fields) -> Command:
-    order, epoch, members, sequence, phase, narrow, x, y, heading, lost, trail = fields
+    order, epoch, members, sequence, phase, narrow, x, y, heading, lost, trail, lane = fields
     return Command(
         order=_word(Order, order),
         roster=_roster(epoch, members),
@@ -158,7 +168,8 @@ def _decode_command(fields: Fields) -> Command:
         narrow=_flag(narrow),
         pose=_pose(x, y, heading),
         lost=_ids(lost),
-        trail=_trail(trail),
+        trail=_points(trail),
+        lane=_lane(lane),
     )
 
 
@@ -226,13 +237,20 @@ def _pose(x: object, y: object, heading: object) -> Pose:
     return Pose(_metres(x), _metres(y), _metres(heading))
 
 
-def _trail(value: object) -> tuple[tuple[float, float], ...]:
+def _points(value: object) -> tuple[tuple[float, float], ...]:
     if type(value) is not list or len(value) % 2 or len(value) > 2 * MAX_TRAIL:
-        raise DecodeError("a trail is not a list of points")
+        raise DecodeError("points are not a list of pairs")
     for coordinate in value:
         if type(coordinate) is not int or abs(coordinate) > 100 * MAX_COORDINATE:
-            raise DecodeError("a trail holds something that is no coordinate")
+            raise DecodeError("a point holds something that is no coordinate")
     return tuple((x / 100.0, y / 100.0) for x, y in zip(value[::2], value[1::2], strict=True))
+
+
+def _lane(value: object) -> tuple[tuple[float, float], ...]:
+    lane = _points(value)
+    if len(lane) not in (0, 2):
+        raise DecodeError("a lane has two ends")
+    return lane
 
 
 _ENCODERS: dict[type, Callable[..., tuple[str, Fields]]] = {
@@ -242,7 +260,7 @@ _ENCODERS: dict[type, Callable[..., tuple[str, Fields]]] = {
     Join: _encode_join,
 }
 _DECODERS: dict[str, tuple[int, Callable[[Fields], Message]]] = {
-    "command": (11, _decode_command),
+    "command": (12, _decode_command),
     "ack": (6, _decode_ack),
     "beacon": (7, _decode_beacon),
     "join": (4, _decode_join),

@@ -10,13 +10,15 @@ A first incarnation starts in `setup`; a restarted one in `joining`, because it 
 not act on an old one. Three families of modes follow:
 - acting as leader: `leading`, or `alone` when it is the only member;
 - following: `following`, `narrow` in the column, `border following` while an obstacle lies between the
-  robot and its slot (it interrupts Algorithm 1 and resumes it, thesis 3.3.4);
+  robot and its slot (it interrupts Algorithm 1 and resumes it, thesis 3.3.4), `giving way` while the
+  leader wants a lane kept clear (lane.py);
 - without a leader: `lost leader` while the elected one is not heard, `joining` while it asks to be
   taken in.
 `stopped` is where a mission ends: the leader at its goal, a follower in its last slot, or a robot of
 profile `thesis` that hears nobody and is told to stop.
 """
 
+from collections.abc import Iterable
 from enum import StrEnum
 
 from onehop.contracts.team import Mode
@@ -29,6 +31,7 @@ class Event(StrEnum):
     TOLD_SETUP = "told setup"  # obeys a command of a team that still gathers
     TOLD_NEXT = "told next"  # obeys a command to drive in the open
     TOLD_NARROW = "told narrow"  # obeys a command to drive in column
+    TOLD_TO_MAKE_ROOM = "told to make room"  # obeys a command to keep a lane clear
     OBSTRUCTED = "obstructed"  # an obstacle lies between it and its slot
     CLEARED = "cleared"  # back in the clear, in the open
     CLEARED_NARROW = "cleared in column"  # back in the clear, in column
@@ -48,6 +51,7 @@ _ANY = {
     Event.TOLD_SETUP: Mode.SETUP,
     Event.TOLD_NEXT: Mode.FOLLOWING,
     Event.TOLD_NARROW: Mode.NARROW,
+    Event.TOLD_TO_MAKE_ROOM: Mode.GIVING_WAY,
     Event.ELECTED: Mode.LEADING,
     Event.LEFT_ALONE: Mode.ALONE,
     Event.GAVE_WAY: Mode.FOLLOWING,
@@ -74,6 +78,7 @@ TABLE: dict[Mode, dict[Event, Mode]] = {
         Event.CLEARED: Mode.FOLLOWING,
         Event.CLEARED_NARROW: Mode.NARROW,
     },
+    Mode.GIVING_WAY: {**_LED, Event.ARRIVED: Mode.STOPPED},
     Mode.LOST_LEADER: _LED,
     Mode.JOINING: _LED,
     Mode.STOPPED: {**_LED, Event.ARRIVED: Mode.STOPPED},
@@ -90,19 +95,33 @@ def next_mode(mode: Mode, event: Event) -> Mode:
 
 
 def diagram() -> str:
-    """The table as a Mermaid state diagram, one edge for each pair of modes."""
+    """The table as a Mermaid state diagram.
+
+    What leads to the same mode from everywhere is drawn once, from `any_mode`; a mode that answers such
+    an event in another way has an edge of its own. Other edges from a mode to itself are left out.
+    """
 
     def name(mode: Mode) -> str:
         return mode.value.replace(" ", "_")
 
     lines = ["stateDiagram-v2", f"    [*] --> {name(START)}", f"    [*] --> {name(RESTART)}: restarted"]
+    lines += _edges("any_mode", _ANY.items())
     for mode, row in TABLE.items():
-        edges: dict[Mode, list[str]] = {}
-        for event, target in row.items():
-            if target is not mode:
-                edges.setdefault(target, []).append(event.value)
-        lines += [
-            f"    {name(mode)} --> {name(target)}: {', '.join(events)}"
-            for target, events in edges.items()
+        own = [
+            (event, target)
+            for event, target in row.items()
+            if (_ANY[event] is not target if event in _ANY else target is not mode)
         ]
+        lines += _edges(name(mode), own)
     return "\n".join(lines) + "\n"
+
+
+def _edges(source: str, transitions: Iterable[tuple[Event, Mode]]) -> list[str]:
+    """One line of the diagram for each mode that these transitions lead to."""
+    events: dict[Mode, list[str]] = {}
+    for event, target in transitions:
+        events.setdefault(target, []).append(event.value)
+    return [
+        f"    {source} --> {target.value.replace(' ', '_')}: {', '.join(names)}"
+        for target, names in events.items()
+    ]

@@ -82,8 +82,9 @@ class Protocol(Standing):
         elif source != roster.leader:
             self._on_handover(now_ns, source, command)
         elif self._obeys(now_ns, source, roster):
-            self._obey(now_ns, roster, command.phase, command.narrow, command.pose)
             link = self.link
+            link.lane = command.lane
+            self._obey(now_ns, roster, command.phase, command.narrow, command.pose)
             link.trail = command.trail or (*link.trail[-15:], (command.pose.x, command.pose.y))
             link.next_ns = now_ns
             duration = max(1, reception.arrival_ns - reception.service_start_ns)
@@ -213,7 +214,7 @@ class Protocol(Standing):
         self.waiting, self._handover, self.host = False, None, 0
         if self.phase is Phase.SETUP and self.epoch == 0:
             return
-        self.phase, self.narrow = Phase.DRIVING, False
+        self.phase, self.narrow, self.lane = Phase.DRIVING, False, ()
         self.fire(Event.ELECTED if len(self.roster.members) > 1 else Event.LEFT_ALONE)
         self.note("elected", epoch=self.epoch, members=self.roster.members)
 
@@ -232,6 +233,12 @@ class Protocol(Standing):
         self._wait_for_leader(now_ns, HANDOVER_PATIENCE * self._period_ns)
         self.fire(Event.GAVE_WAY)
         self._handover = (command, now_ns)
+
+    def keep_clear(self, lane: tuple[tuple[float, float], ...], say: bool) -> None:
+        """A leader wants this lane kept clear, none if it is empty. say: now, not at the next period."""
+        self.lane = lane
+        if say and self.leadership is not None:
+            self.leadership.urgent = True
 
     # speaking
 
@@ -276,7 +283,9 @@ class Protocol(Standing):
         leadership = self.leadership
         assert leadership is not None
         leadership.next_command(now_ns)
-        order = Order.LOST_FOLLOWER if lost else Order.NARROW if self.narrow else Order.NEXT
+        order = Order.NARROW if self.narrow else Order.NEXT
+        if lost or self.lane:
+            order = Order.LOST_FOLLOWER if lost else Order.MAKE_ROOM
         command = self._command(order, pose, lost, tuple(trail) if self.open else ())
         self.send_to(leadership.followers, command, self.team.next_msdu_bytes)
         if self.open:
@@ -307,7 +316,9 @@ class Protocol(Standing):
         assert self.roster is not None
         assert self.leadership is not None
         sequence = self.leadership.sequence
-        return Command(order, self.roster, sequence, self.phase, self.narrow, pose, lost, trail)
+        return Command(
+            order, self.roster, sequence, self.phase, self.narrow, pose, lost, trail, self.lane
+        )
 
     def _on_silence(self, now_ns: int, pose: Pose) -> None:
         """Lost_Leader: the leader, or the one elected in its place, was silent for too long.

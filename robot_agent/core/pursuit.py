@@ -96,14 +96,21 @@ class Pursuit:
         return self._aimed(pose, way[0], len(way) == 1, in_sight or bool(self._crumbs))
 
     def _learn(self, trail: Sequence[Point]) -> None:
-        """Add what is new in the leader's trail; a trail that has nothing in common is another one."""
+        """Add what is new in the leader's trail; a trail that has nothing in common is another one.
+
+        A leader that came back tells a trail without the piece that it drove twice (trail.py). It drove
+        back along that piece, and so does who followed it there.
+        """
         self._told = trail
-        newest = self._way[-1] if self._way else None
-        if newest in trail:
-            self._way += trail[trail.index(newest) + 1 :]
-            del self._way[:-MEMORY]
-        else:
+        way = self._way
+        common = next((k for k in range(len(way) - 1, -1, -1) if way[k] in trail), None)
+        if common is None:
             self._way, self._crumbs = list(trail), []
+            return
+        newest = way[common]
+        way += way[common : len(way) - 1][::-1]
+        way += trail[trail.index(newest) + 1 :]
+        del way[:-MEMORY]
 
     def _in_sight(self, pose: Pose, point: Point) -> bool:
         x, y = to_local(pose, *point)

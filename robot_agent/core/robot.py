@@ -5,7 +5,7 @@ Order of a tick: hear (protocol), drive (planner when leading, tracking when fol
 
 import math
 
-from onehop.contracts.airtime import ideal_throughput_bps
+from onehop.contracts.airtime import THESIS_THRESHOLD_BPS, threshold_bps
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map
 from onehop.contracts.messages import Action, Note, Percept, Ranges
 from onehop.contracts.randomness import generator
@@ -25,24 +25,17 @@ from robot_agent.core.standing import NANOSECONDS
 from robot_agent.core.tracking import sampled
 from robot_agent.core.trail import behind
 
-THESIS_THRESHOLD_BPS = 0.5333e6
-"""Minimum acceptable throughput [bit/s] (thesis 3.8.3)."""
-
-THRESHOLD_SHARE = THESIS_THRESHOLD_BPS / 0.7792e6
-"""The same as a share of the ideal throughput at 1 Mb/s and 800 B (eq. 3.15, full exchange)."""
-
 SETTLING_TICKS = 100
 """Ticks without coming nearer to its last slot after which a follower stops where it is."""
 
 FOLLOWER_MODES = (Mode.FOLLOWING, Mode.NARROW, Mode.BORDER)
 
 
-def threshold_bps(briefing: Briefing) -> float:
+def required_throughput_bps(briefing: Briefing) -> float:
     """Below this throughput a follower hurries [bit/s]."""
     if briefing.gains.threshold == "thesis":
         return THESIS_THRESHOLD_BPS
-    ideal = ideal_throughput_bps(briefing.radio.rate_mbps, briefing.team.next_msdu_bytes)
-    return THRESHOLD_SHARE * ideal
+    return threshold_bps(briefing.radio.rate_mbps, briefing.team.next_msdu_bytes)
 
 
 class Robot:
@@ -58,7 +51,7 @@ class Robot:
         self._follower = Follower(body, gains, fan, dodge)
         self._leader = Leader(briefing, gains, fan, make_pathfinder, rng)
         self._safety = SafetyFilter(body, fan, period)
-        self._threshold = threshold_bps(briefing)
+        self._threshold = required_throughput_bps(briefing)
         self._policy = make_policy(briefing.gains, self._threshold)
         self._protocol: Protocol | None = None
         self._formation: Formation | None = None
@@ -89,9 +82,10 @@ class Robot:
             twist = self._lead(protocol, now_ns, pose, percept.scan, nearest)
         else:
             twist = self._follow(protocol, now_ns, pose, percept.scan, nearest)
-        twist = self._safety.filtered(twist, percept.scan, nearest)
+        blind = self._briefing.gains.reverse and not protocol.leading
+        twist = self._safety.filtered(twist, percept.scan, nearest, blind)
         if not (protocol.leading and protocol.mode is Mode.SETUP and twist.w):
-            protocol.speak(now_ns, pose, self._leader.trail)
+            protocol.speak(now_ns, self._told_pose(protocol, pose), self._leader.trail.points)
         notes = (*self._notes, *protocol.take_notes())
         self._notes = []
         return Action(
@@ -167,6 +161,8 @@ class Robot:
         self._settle(protocol)
         if self._at_rest(protocol):
             return STANDSTILL
+        if protocol.mode is Mode.GIVING_WAY:
+            return self._follower.draw_aside(pose, scan, link.lane)
         moves = protocol.phase is Phase.DRIVING
         standoff = math.hypot(target.x - leader.x, target.y - leader.y)
         twist = self._follower.step(
@@ -174,6 +170,12 @@ class Robot:
         )
         self._tell_border(protocol)
         return twist
+
+    def _told_pose(self, protocol: Protocol, pose: Pose) -> Pose:
+        """What followers form up on: in profile `team` the course instead of the heading (trail.py)."""
+        if not protocol.open or not protocol.leading or protocol.mode is Mode.SETUP:
+            return pose
+        return Pose(pose.x, pose.y, self._leader.trail.course(pose))
 
     def _slot_pose(self, protocol: Protocol, leader: Pose) -> Pose:
         """This robot's slot in the map frame, from the leader's last pose."""

@@ -4,10 +4,10 @@ At a tick a robot may close at most half of the gap that it sees above a margin.
 to whoever may be coming the other way: if both keep the rule, the gap never falls below the margin,
 whatever either of them wants. Twists change at once in this world, so no braking distance is needed.
 
-The laser looks ahead only. That suffices because a robot that passes this filter never backs up: driving
-forward takes it away from all that is behind it, turning on the spot does not move a disc, and whoever
-is behind sees it and keeps the rule. Driving backwards (thesis eq. 3.10) is therefore a choice of the
-scenario, and unprotected.
+The laser looks ahead only. That suffices because a robot that passes this filter never backs up, whoever
+asks for it: driving forward takes it away from all that is behind it, turning on the spot does not move
+a disc, and whoever is behind sees it and keeps the rule. Driving backwards (thesis eq. 3.10) is a choice
+of the scenario for followers (gains.reverse), and unprotected.
 
 Source of the half: reciprocal collision avoidance (van den Berg et al., 2008), here on distances.
 """
@@ -36,9 +36,14 @@ class SafetyFilter:
         self.reach = body.radius + MARGIN + 2.0 * top * period
         """Nothing farther away than this can limit a tick [m]."""
 
-    def filtered(self, twist: Twist, scan: Ranges, nearest: float) -> Twist:
-        """The same twist, or a slower one of the same turn rate. nearest: least range in scan [m]."""
-        if twist.v <= 0.0 or nearest > self.reach:
+    def filtered(self, twist: Twist, scan: Ranges, nearest: float, blind: bool = False) -> Twist:
+        """The same twist, or a slower one of the same turn rate. nearest: least range in scan [m].
+
+        blind: this robot may back up without looking.
+        """
+        if twist.v < 0.0:
+            return twist if blind else Twist(0.0, twist.w)
+        if nearest > self.reach:
             return twist
         near = np.flatnonzero(scan < self.reach)
         ranges = scan[near].astype(np.float64)

@@ -30,6 +30,7 @@ class Standing(Outbox):
         self.epoch = 0
         self.phase = Phase.SETUP if self.mode is START else Phase.DRIVING
         self.narrow = False
+        self.lane: tuple[tuple[float, float], ...] = ()
         self.link = Link(now_ns)
         self.host = 0
         self.waiting = False
@@ -80,11 +81,14 @@ class Standing(Outbox):
         if phase is Phase.SETUP:
             self.fire(Event.TOLD_SETUP)
         elif phase is Phase.DRIVING or self.mode is not Mode.STOPPED:
-            self.fire(Event.TOLD_NARROW if narrow else Event.TOLD_NEXT)
+            if self.link.lane:
+                self.fire(Event.TOLD_TO_MAKE_ROOM)
+            else:
+                self.fire(Event.TOLD_NARROW if narrow else Event.TOLD_NEXT)
 
     def _wait_for_leader(self, now_ns: int, patience_ns: int) -> None:
         self.leadership = None
         self.waiting = True
         self.link.heard_ns = now_ns
-        self.link.trail = ()
+        self.link.trail = self.link.lane = ()
         self._patience_ns = patience_ns

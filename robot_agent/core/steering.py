@@ -30,6 +30,10 @@ STEP = math.radians(6.0)
 NEEDED = 1.2
 """A direction is free when it is for this far [m], or up to the target if that is nearer."""
 
+TURN_AWAY = math.radians(12.0)
+"""What is nearer than the accepted clearance blocks a right angle and this much more to both sides
+[rad]: the robot then draws away from it. Driving straight along it would leave it as near as it is."""
+
 INERTIA = 0.25
 """Cost of leaving the direction taken before, relative to that of leaving the bearing."""
 
@@ -78,7 +82,8 @@ class Steering:
         if shadow is None:
             radius = self._radii[tight]
             ratio = np.minimum(radius / self._ranges, 1.0)
-            shadow = self._shadows[tight] = np.arcsin(ratio), self._ranges - radius
+            widths = np.where(ratio < 1.0, np.arcsin(ratio), 0.5 * math.pi + TURN_AWAY)
+            shadow = self._shadows[tight] = widths, self._ranges - radius
         return shadow
 
     def free_distance(self, bearing: float, tight: bool = False) -> float:

@@ -2,8 +2,11 @@
 
 import pytest
 
-from onehop.contracts.sections import GainsSection
+from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.scenario import Scenario, robot_briefing
+from onehop.contracts.sections import GainsSection, GoalSection, MapSection, TeamSection
 from robot_agent.core.gains import make_policy
+from robot_agent.core.robot import required_throughput_bps
 
 THRESHOLD = 0.5333e6  # thesis 3.8.3
 
@@ -44,3 +47,23 @@ def test_smooth_policy_sees_a_steady_fall_before_the_threshold():
 def test_gain_stays_within_its_bounds(policy):
     values = course(policy, [0.0, 1e6, 0.3e6, 0.0, 2e6, 0.5e6])
     assert all(1.0 <= gain <= 3.0 for gain in values)
+
+
+def test_the_ideal_threshold_follows_rate_and_size_of_next():
+    """Thesis 3.8.3: 0.5333 Mb/s; eq. 3.15 gives 0.7792 Mb/s at 1 Mb/s and 800 B."""
+
+    def threshold(threshold="ideal", rate_mbps=1.0, size=800):
+        scenario = Scenario(
+            name="links",
+            goal=GoalSection(9.0, 0.0),
+            map=MapSection(width=20.0, height=20.0),
+            team=TeamSection(next_msdu_bytes=size),
+            gains=GainsSection(threshold=threshold),
+            radio=RadioSection(rate_mbps=rate_mbps),
+        )
+        return required_throughput_bps(robot_briefing(scenario, 1, 0))
+
+    assert threshold() == pytest.approx(THRESHOLD, rel=1e-3)
+    assert threshold(rate_mbps=11.0) > 3.0 * THRESHOLD
+    assert threshold(size=200) < 0.8 * THRESHOLD
+    assert threshold("thesis", 11.0, 200) == THRESHOLD

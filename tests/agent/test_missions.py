@@ -136,6 +136,30 @@ def test_epochs_never_go_back_under_faults(open_field):
         assert all(after[i].epoch >= before[i].epoch for i in after if i in before)
 
 
+def test_a_leader_slows_down_for_a_straggler_if_the_scenario_says_so(open_field):
+    held = fault("hold", 30, 6, duration_s=10)
+
+    def speed(share):
+        """The leader's mean speed while robot 6 stands still, once its reports say so [m/s]."""
+        _, diary = mission(open_field, f"team.straggler_speed={share}", faults=(held,))
+        return (diary.at(35.0)[3].error - diary.at(39.0)[3].error) / 4.0
+
+    assert speed(1.0) == pytest.approx(1.0, abs=0.05)
+    assert speed(0.3) == pytest.approx(0.3, abs=0.1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("number", "seed"),
+    [(3, 15), (3, 16), (3, 11), (2, 8)],
+    ids=["a pocket", "a passage", "a corner with a mate behind it", "pinned beside a wall"],
+)
+def test_a_leader_that_meets_its_own_team_gets_everyone_out(number, seed):
+    outcome, _ = mission(SCENARIOS / f"map{number}.toml", f"seed={seed}")
+    assert outcome.arrived == (1, 2, 3, 4, 5, 6), outcome.reason
+    assert outcome.collisions == 0
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("number", [1, 2, 3])
 def test_a_study_map_is_crossed_without_a_contact(number):

@@ -1,5 +1,7 @@
 """The table of modes, and the diagram drawn from it."""
 
+from pathlib import Path
+
 import pytest
 
 from onehop.contracts.team import Mode
@@ -44,11 +46,26 @@ def test_a_transition_that_the_table_lacks_is_an_error_that_names_it():
         next_mode(Mode.LEADING, Event.OBSTRUCTED)
 
 
-def test_diagram_shows_every_pair_of_modes_of_the_table_once():
-    lines = diagram().splitlines()
-    edges = {
-        (mode, target) for mode, row in TABLE.items() for target in row.values() if target is not mode
-    }
-    drawn = [line for line in lines if "-->" in line and "[*]" not in line]
-    assert len(drawn) == len(edges)
-    assert lines[0] == "stateDiagram-v2"
+def test_the_diagram_read_back_is_the_table():
+    rows = {}
+    for line in diagram().splitlines()[1:]:
+        source, rest = line.strip().split(" --> ")
+        target, _, events = rest.partition(": ")
+        for event in events.split(", "):
+            assert rows.setdefault(source, {}).setdefault(event, target) == target
+    start = rows.pop("[*]")
+    assert set(start.values()) == {START.value, RESTART.value}
+    everywhere = rows.pop("any_mode")
+    named = {mode.value.replace(" ", "_"): mode for mode in Mode}
+    for mode, row in TABLE.items():
+        own = rows.get(mode.value.replace(" ", "_"), {})
+        assert set(own) <= {event.value for event in row}
+        for event, target in row.items():
+            shown = own.get(event.value, everywhere.get(event.value))
+            assert (mode if shown is None else named[shown]) is target
+
+
+def test_the_diagram_in_the_docs_is_the_one_of_the_table():
+    text = (Path(__file__).parents[2] / "docs" / "modes.md").read_text()
+    shown = text.split("```mermaid\n")[1].split("```")[0]
+    assert shown == diagram(), "put what robot_agent.core.modes.diagram() returns into docs/modes.md"

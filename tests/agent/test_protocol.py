@@ -127,6 +127,31 @@ def test_a_leader_that_was_cut_off_goes_on_alone():
     assert net.status(4).leader == 4
 
 
+def last_disagreement(net, seconds):
+    """When the present robots last disagreed about their roster [s], from now on."""
+    began, last = net.seconds, 0.0
+    while net.seconds < began + seconds:
+        net.step()
+        if len(net.leaders()) != 1 or not net.agree():
+            last = net.seconds - began
+    return last
+
+
+def test_deaths_at_the_moment_of_healing_take_more_than_four_periods_and_at_most_seven():
+    """docs/modes.md: 4 has to give 5 up first, and the union that it forms then still names 6."""
+    took = []
+    for phase in range(8):
+        net = drive()
+        net.cut((1, 2, 3))
+        net.run(14.0 + 0.25 * phase)
+        net.heal()
+        net.kill(5)
+        net.kill(6)
+        took.append(last_disagreement(net, 30.0))
+        assert net.status(1).members == (1, 2, 3, 4)
+    assert BOUND < max(took) <= BOUND + 3 * NEXT_PERIOD
+
+
 def test_a_cut_makes_two_teams_and_healing_one_again_within_four_periods():
     net = drive()
     net.cut((1, 2, 3))

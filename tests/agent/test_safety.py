@@ -3,11 +3,17 @@
 import math
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onehop.contracts.geometry import Pose, Twist, wrap_angle
-from onehop.contracts.sections import RobotSection
+from onehop.contracts.messages import Percept
+from onehop.contracts.scenario import Scenario, robot_briefing
+from onehop.contracts.sections import GainsSection, GoalSection, MapSection, RobotSection, TeamSection
+from onehop.contracts.team import Mode
+from robot_agent.core.planning import Guidance, Progress
+from robot_agent.core.robot import Robot
 from robot_agent.core.safety import MARGIN, SafetyFilter
 from robot_agent.core.scan import Fan
 
@@ -83,3 +89,39 @@ def test_a_robot_at_the_margin_may_still_turn_and_drive_away():
     beside = np.full(181, np.inf, np.float32)
     beside[0] = BODY.radius + MARGIN
     assert guard.filtered(Twist(1.0, 0.0), beside, float(beside.min())).v == 1.0
+
+
+def test_a_robot_backs_up_only_where_it_may_do_so_blindly():
+    guard = SafetyFilter(BODY, FAN, PERIOD)
+    nothing = np.full(181, np.inf, np.float32)
+    assert guard.filtered(Twist(-1.0, 0.5), nothing, math.inf) == Twist(0.0, 0.5)
+    assert guard.filtered(Twist(-1.0, 0.5), nothing, math.inf, blind=True) == Twist(-1.0, 0.5)
+
+
+class BackingUp:
+    """Way-finding that wants to drive backwards."""
+
+    def step(self, pose, scan, moving):
+        del scan, moving
+        way = Twist(-1.0, 0.0)
+        return Guidance(way, Progress.DRIVING, 9.0, math.inf, (pose.x - 9.0, pose.y), ())
+
+
+@pytest.mark.parametrize("reverse", [False, True])
+def test_a_leader_never_backs_up_even_where_followers_may(reverse):
+    scenario = Scenario(
+        name="back",
+        goal=GoalSection(9.0, 0.0),
+        map=MapSection(width=20.0, height=20.0),
+        team=TeamSection(size=1),
+        gains=GainsSection(reverse=reverse),
+    )
+    robot = Robot(robot_briefing(scenario, 1, 0), lambda briefing, pose, rng: BackingUp())  # noqa: ARG005
+    wanted = []
+    for tick in range(20):
+        here, still = Pose(5.0, 0.0, 0.0), Twist(0.0, 0.0)
+        scan = np.full(181, np.inf, np.float32)
+        action = robot.step(Percept(tick, tick * 50_000_000, here, still, scan, ()))
+        wanted.append(action.twist.v)
+    assert action.status.mode is Mode.ALONE
+    assert set(wanted) == {0.0}

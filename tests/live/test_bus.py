@@ -5,10 +5,19 @@ from collections.abc import Iterator
 from contextlib import ExitStack
 
 import pytest
+import zenoh
 
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
-from onehop.drive.bus import Bus, make_credentials, open_client, open_router
+from onehop.drive.bus import (
+    ALIVE,
+    GONE,
+    ROBOT_LINK_BYTES,
+    Bus,
+    make_credentials,
+    open_client,
+    open_router,
+)
 from onehop.mission.processes import free_endpoint
 
 pytestmark = pytest.mark.live
@@ -23,20 +32,10 @@ class House:
         words = make_credentials(NAMES)
         self.endpoint = free_endpoint()
         self.world = stack.enter_context(open_router("m", self.endpoint, words))
-        for key in ("out/*", "air", "recorded", "control"):
-            self.world.subscribe(key)
         self.clients = {
             name: stack.enter_context(open_client("m", self.endpoint, name, words[name]))
             for name in NAMES
         }
-        for name, keys in {
-            "robot-1": ("percept/1",),
-            "robot-2": ("percept/2", "percept/1", "out/1", "truth", "air"),
-            "radio": ("truth", "out/1"),
-            "recorder": ("record", "truth"),
-        }.items():
-            for key in keys:
-                self.clients[name].subscribe(key)
         time.sleep(0.3)  # declarations travel by themselves; nothing announces that they have arrived
 
 
@@ -48,45 +47,55 @@ def house() -> Iterator[House]:
 
 def _heard(bus: Bus) -> list[tuple[str, bytes]]:
     messages = []
-    while (received := bus.receive(0.2)) is not None:
+    while (received := bus.receive_by(time.monotonic() + 0.2)) is not None:
         messages.append(received)
     return sorted(messages)
 
 
 def test_everyone_is_heard_where_the_table_lets_them_speak(house: House) -> None:
-    house.clients["robot-1"].publisher("out/1")(b"action")
-    house.clients["radio"].publisher("air")(b"inboxes")
-    house.clients["recorder"].publisher("recorded")(b"tick")
-    house.clients["operator"].publisher("control")(b"stop")
-    house.world.publisher("percept/1")(b"scan")
-    house.world.publisher("truth")(b"poses")
-    house.world.publisher("record")(b"messages")
-    assert _heard(house.world) == [
-        ("air", b"inboxes"),
-        ("control", b"stop"),
-        ("out/1", b"action"),
-        ("recorded", b"tick"),
-    ]
-    assert _heard(house.clients["robot-1"]) == [("percept/1", b"scan")]
-    assert _heard(house.clients["radio"]) == [("truth", b"poses")]
-    assert _heard(house.clients["recorder"]) == [("record", b"messages")]
+    for name in NAMES:
+        house.clients[name].publisher(f"from/{name}/word")(name.encode())
+        house.world.publisher(f"to/{name}/order")(name.encode())
+    house.clients["recorder"].publisher("to/operator/result")(b"summary")
+    assert _heard(house.world) == sorted((f"{name}/word", name.encode()) for name in NAMES)
+    for name in NAMES:
+        told = [("order", name.encode())]
+        if name == "operator":
+            told.append(("result", b"summary"))
+        assert _heard(house.clients[name]) == told
 
 
 def test_a_robot_cannot_speak_for_another_or_around_the_radio(house: House) -> None:
     robot = house.clients["robot-2"]
-    for key in ("out/1", "percept/1", "air", "truth", "control", "end", "recorded"):
-        robot.publisher(key)(b"forged")
+    for name in ("robot-1", "radio", "recorder", "operator", "world"):
+        robot.publisher(f"from/{name}/word")(b"forged")
+        robot.publisher(f"to/{name}/order")(b"forged")
+    robot.publisher("truth")(b"forged")
     assert _heard(house.world) == []
-    assert _heard(house.clients["robot-1"]) == []
-    assert _heard(house.clients["radio"]) == []
+    for name in ("robot-1", "radio", "recorder", "operator"):
+        assert _heard(house.clients[name]) == []
 
 
 def test_a_robot_hears_nothing_that_is_not_for_it(house: House) -> None:
-    house.world.publisher("percept/1")(b"scan")
-    house.world.publisher("truth")(b"poses")
-    house.clients["radio"].publisher("air")(b"inboxes")
-    house.clients["robot-1"].publisher("out/1")(b"action")
-    assert _heard(house.clients["robot-2"]) == []
+    spy = house.clients["robot-2"]._session
+    keys = ("m/to/robot-1/**", "m/from/**", "m/to/radio/**", "m/**")
+    ears = [spy.declare_subscriber(key, zenoh.handlers.FifoChannel(100)) for key in keys]
+    time.sleep(0.3)
+    house.world.publisher("to/robot-1/percept")(b"scan")
+    house.world.publisher("to/radio/truth")(b"poses")
+    house.clients["radio"].publisher("from/radio/air")(b"inboxes")
+    house.clients["robot-1"].publisher("from/robot-1/out")(b"action")
+    assert len(_heard(house.world)) == 2
+    assert [ear.try_recv() for ear in ears] == [None] * len(ears)
+
+
+def test_liveliness_comes_with_the_messages(house: House) -> None:
+    house.world.watch("*")
+    robot = house.clients["robot-1"]
+    robot.announce("robot-1")
+    assert _heard(house.world) == [("world/alive/robot-1", ALIVE)]
+    robot.__exit__(None, None, None)
+    assert _heard(house.world) == [("world/alive/robot-1", GONE)]
 
 
 def test_a_process_is_briefed_for_itself_only(house: House) -> None:
@@ -99,3 +108,20 @@ def test_a_process_is_briefed_for_itself_only(house: House) -> None:
 def test_a_wrong_password_gets_nobody_in(house: House) -> None:
     with pytest.raises(MissionError, match="no bus at"):
         open_client("m", house.endpoint, "robot-1", "guess", timeout_ms=1000)
+
+
+def test_what_a_robots_link_cannot_carry_is_refused(house: House) -> None:
+    put = house.clients["robot-1"].publisher("from/robot-1/out")
+    longest = bytes(ROBOT_LINK_BYTES)
+    put(longest)
+    assert _heard(house.world) == [("robot-1/out", longest)]
+    with pytest.raises(MissionError, match=r"from/robot-1/out: a message of 48001 bytes"):
+        put(bytes(ROBOT_LINK_BYTES + 1))
+
+
+def test_other_links_carry_messages_of_any_length(house: House) -> None:
+    record, air = bytes(3_000_000), bytes(500_000)
+    house.world.publisher("to/recorder/record")(record)
+    house.clients["radio"].publisher("from/radio/air")(air)
+    assert _heard(house.clients["recorder"]) == [("record", record)]
+    assert _heard(house.world) == [("radio/air", air)]

@@ -6,7 +6,7 @@ import pytest
 
 from onehop import scenario_file
 from onehop.contracts.errors import ScenarioError
-from onehop.contracts.scenario import Briefing, Scenario, robot_briefing
+from onehop.contracts.scenario import Briefing, robot_briefing
 from onehop.drive.codec import decode, encode
 from tests.onehop.scenes import FIELD, field
 
@@ -141,6 +141,11 @@ def test_a_point_of_the_wrong_form_is_refused(text: str) -> None:
         scenario_file.point(text, "--goal")
 
 
-def test_a_scenario_crosses_the_wire(tmp_path: Path) -> None:
-    scenario = field(tmp_path).scenario
-    assert decode(Scenario, encode(scenario)) == scenario
+def test_what_a_robot_is_told_crosses_the_wire(tmp_path: Path) -> None:
+    briefing = robot_briefing(field(tmp_path).scenario, 2, 1)
+    assert decode(Briefing, encode(briefing)) == briefing
+
+
+def test_a_bundle_reads_back_from_its_json(tmp_path: Path) -> None:
+    bundle = field(tmp_path)
+    assert scenario_file.bundle_from_json(bundle.scenario_json(), bundle.files, "test") == bundle

@@ -65,7 +65,10 @@ class Host:
 
 
 class Net:
-    """Robots, the links among them, and everything that was sent. protocol: "mrdv" or "mrsr"."""
+    """Robots, the links among them, and everything that was sent. protocol: "mrdv" or "mrsr".
+
+    hold_ns: how long a packet waits in its card.
+    """
 
     def __init__(self, protocol: str, robots: Iterable[int], links: Iterable[tuple[int, int]]) -> None:
         self.protocol = protocol
@@ -75,6 +78,7 @@ class Net:
         self.remaining = 0.0
         self.loss: Callable[[int, int], bool] = lambda _sender, _receiver: False
         self.watch: Callable[[], None] = lambda: None
+        self.hold_ns = 0
         self.links = {frozenset(link) for link in links}
         self.sent: list[Sent] = []
         self.delivered: list[tuple[int, Data]] = []
@@ -127,7 +131,7 @@ class Net:
 
     def put(self, host: Host, packet: object, target: int, size_bytes: int, now: int) -> None:
         self.sent.append(Sent(now, host.robot, target, packet, size_bytes))
-        self.at(now + HOP_NS, self._arrive, (host, packet, target))
+        self.at(now + self.hold_ns + HOP_NS, self._arrive, (host, packet, target))
 
     def release(self, message: Message) -> None:
         """A robot holds a message no more; the last one loses it unless it was delivered."""
@@ -145,6 +149,8 @@ class Net:
     def _arrive(self, given: tuple[Host, object, int], now: int) -> None:
         host, packet, target = given
         if target == BROADCAST:
+            if host.alive:
+                host.router.on_broadcast(packet, now)
             for robot in sorted(self.hosts):
                 if self.linked(host.robot, robot) and not self.loss(host.robot, robot):
                     self.hosts[robot].router.on_packet(packet, host.robot, now)
@@ -167,6 +173,10 @@ class Net:
         if isinstance(packet, Data):
             packet.message.copies += 1
             packet = packet.moved(target, 1)
+        else:
+            for robot in sorted(self.hosts):
+                if robot != target and self.linked(host.robot, robot):
+                    self.hosts[robot].router.on_overheard(packet, host.robot, now)
         self.hosts[target].router.on_packet(packet, host.robot, now)
 
 

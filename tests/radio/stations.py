@@ -1,5 +1,7 @@
 """Saturated stations for the tests: Bianchi's own timing, and runs of the event engine."""
 
+import math
+
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Cut, Presence
 from onehop.contracts.radio_section import RadioSection
@@ -9,7 +11,13 @@ from radio_proxy.core.contention import Frame
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.medium import Emission, Medium
-from radio_proxy.core.propagation import Field, link_budget
+from radio_proxy.core.propagation import Field, LinkBudget, link_budget
+
+
+def threshold_probability(budget: LinkBudget, snr_db: float) -> float:
+    """P(one frame reaches the receive threshold) at a mean SNR, over the fading."""
+    margin = (snr_db - budget.receive_threshold_db) / budget.shadowing_db
+    return 0.5 * math.erfc(-margin / math.sqrt(2.0))
 
 
 def fhss(window: int, stages: int) -> Timing:
@@ -59,9 +67,11 @@ class Cell:
         self.arrived: list[tuple[int, int, Frame]] = []
         self.given_up: list[Frame] = []
 
-    def send_at(self, time_us: float, sender: int, receiver: int, msdu_bytes: int = 800) -> Frame:
+    def send_at(
+        self, time_us: float, sender: int, receiver: int, msdu_bytes: int = 800, urgent: bool = False
+    ) -> Frame:
         """Hand a frame over at that time."""
-        frame = Frame(receiver, msdu_bytes, None)
+        frame = Frame(receiver, msdu_bytes, None, urgent)
 
         def hand_over(_: object, now: int) -> None:
             self.dcf.enqueue(sender, frame, now, False)

@@ -9,10 +9,9 @@ from radio_proxy.core.closed_forms import (
     bianchi_normalized,
     bianchi_tau,
     frame_probability,
-    threshold_probability,
 )
 from radio_proxy.core.propagation import link_budget
-from tests.radio.stations import fhss
+from tests.radio.stations import fhss, threshold_probability
 
 STANDARD_1999 = dsss(RadioSection(cts_timeout_us=334.0))
 

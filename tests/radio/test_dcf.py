@@ -51,6 +51,16 @@ def test_a_busy_medium_is_entered_after_a_backoff() -> None:
     assert 0 <= slots <= 31
 
 
+def test_routing_packets_are_served_before_the_data_that_waits() -> None:
+    """Das, Perkins and Royer, INFOCOM 2000, section IV; each kind in its own order."""
+    cell = Cell([(0, 0), (0, 0)], STILL)
+    first, data, *routing = (
+        cell.send_at(time_us, 0, 1, urgent=time_us > 150) for time_us in (0, 100, 200, 300)
+    )
+    cell.run(60_000)
+    assert [frame for _, _, frame in cell.arrived] == [first, *routing, data]
+
+
 def test_backoff_freezes_while_the_medium_is_busy() -> None:
     """9.2.5.2: a station that is interrupted after two slots of its backoff waits for the rest alone."""
     exchange_us, difs_us = 7_542 + 314, 50

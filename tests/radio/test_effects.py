@@ -7,6 +7,7 @@ import pytest
 from onehop.contracts.airtime import THESIS_THRESHOLD_BPS
 from onehop.contracts.messages import Cut, Fate, Jam, Reception, Verdict
 from onehop.contracts.radio_section import RadioSection
+from radio_proxy.core.routing.mrsr_packets import Rrep, Rreq, source_route_bytes
 from tests.radio.missions import Mission, line, message
 
 NS3_AODV_MS = (7.542, 15.398, 23.255)
@@ -63,6 +64,11 @@ def test_the_fallback_delivers_when_nobody_passes_requests_on(routing: str) -> N
     assert verdicts[0].discovery_ns > 500_000_000
 
 
+def routing_bytes(mission: Mission) -> int:
+    """Bytes of routing packets; the source routes of data are counted apart."""
+    return sum(count for kind, count in mission.control_bytes.items() if kind != "source_route")
+
+
 def drive(routing: str, seed: int) -> tuple[int, list[Verdict]]:
     """Control bytes and Next messages of a long column that sways, so that routes keep changing."""
     mission = Mission(line(6, 12.0), still(routing), seed)
@@ -83,7 +89,7 @@ def drive(routing: str, seed: int) -> tuple[int, list[Verdict]]:
             i: (message(3, 60),) for i, inbox in mission.inboxes.items() if i != 3 and inbox.receptions
         }
     nexts = [v for v in mission.verdicts if v.msdu_bytes == 800 and v.fate is Fate.DELIVERED]
-    return sum(mission.control_bytes.values()), nexts
+    return routing_bytes(mission), nexts
 
 
 @pytest.mark.slow
@@ -100,6 +106,17 @@ def test_mrsr_has_less_overhead_and_more_delay_a_hop_than_mrdv(seed: int) -> Non
         delay_a_hop[routing] = sum(delays) / len(delays)
     assert overhead["mrsr"] < 0.8 * overhead["mrdv"]
     assert delay_a_hop["mrsr"] > 1.01 * delay_a_hop["mrdv"]
+
+
+def test_every_hop_of_a_routing_packet_counts_and_so_does_every_hop_of_a_source_route() -> None:
+    """Broch et al. 1998, 5.2. One message over two hops; nobody knows anybody."""
+    mission = Mission(line(3, 20.0), still("mrsr"))
+    mission.run(20, {1: (message(3),)})
+    assert mission.control_bytes == {
+        "rreq": 2 * Rreq(1, 3, (1,), 1, False).size_bytes + Rreq(1, 3, (1, 2), 254, False).size_bytes,
+        "rrep": 2 * Rrep(1, (1, 2, 3), (3, 2, 1)).size_bytes,
+        "source_route": 2 * source_route_bytes((1, 2, 3)),
+    }
 
 
 def test_one_hop_costs_no_routing_while_it_is_used() -> None:

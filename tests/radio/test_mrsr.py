@@ -9,7 +9,7 @@ from radio_proxy.core.message import Data, Message
 from radio_proxy.core.routing.mrsr import MAX_SALVAGE, SEND_BUFFER, MrsrRouter
 from radio_proxy.core.routing.mrsr_cache import CACHE_TIMEOUT_NS, PATHS_PER_DESTINATION, RouteCache
 from radio_proxy.core.routing.mrsr_packets import Rerr, Rrep, Rreq, source_route_bytes, without_loops
-from tests.radio.net import MS, Net, chain
+from tests.radio.net import HOP_NS, MS, Net, chain
 
 LONG = 60_000 * MS
 
@@ -120,11 +120,53 @@ def test_a_reply_that_is_needless_is_not_sent() -> None:
     net = Net("mrsr", [1], [])
     router(net, 1).cache.add((1, 5), 0)
     router(net, 1).on_packet(request(5, 9), 9, 0)
-    router(net, 1).on_overheard(Rrep(1, (9, 2, 4, 5), (2, 9)))
+    router(net, 1).on_overheard(Rrep(1, (9, 2, 4, 5), (2, 9)), 2, 0)
     router(net, 1).on_packet(request(5, 9, number=2), 9, 0)
-    router(net, 1).on_overheard(Rrep(2, (9, 2, 5), (2, 9)))
+    router(net, 1).on_overheard(Rrep(2, (9, 2, 5), (2, 9)), 2, 0)
     net.run(LONG)
     assert [sent.packet for sent in net.of(Rrep)] == [Rrep(1, (9, 1, 5), (1, 9))]
+
+
+def test_an_overheard_reply_teaches_the_way_to_everyone_on_it() -> None:
+    """3.3.1: 5 hears 2 pass on the reply of 3 to 1."""
+    net = Net("mrsr", [1, 2, 3, 5], [(1, 2), (2, 3), (2, 5)])
+    net.offer(1, 3)
+    net.run(1_000 * MS)
+    assert router(net, 5).cache.find(3, net.now) == (5, 2, 3)
+    assert router(net, 5).cache.find(1, net.now) == (5, 2, 1)
+    asked = len(net.of(Rreq))
+    net.offer(5, 3)
+    net.run(1_000 * MS)
+    assert [arrived.path for _, arrived in net.delivered] == [(1, 2, 3), (5, 2, 3)]
+    assert len(net.of(Rreq)) == asked
+
+
+def test_an_overheard_reply_sends_what_waits_for_its_way() -> None:
+    """8.2.6: a route that comes by chance ends a search as well."""
+    net = Net("mrsr", [1, 2, 4, 9], [(1, 2), (2, 4)])
+    message = net.offer(1, 4)
+    router(net, 1).on_overheard(Rrep(7, (9, 2, 4), (2, 9)), 2, 0)
+    net.run(5 * MS)
+    assert [arrived.message for _, arrived in net.delivered] == [message]
+
+
+def test_an_overheard_error_is_heeded() -> None:
+    """3.3.1: whoever hears of a broken link forgets it."""
+    net = Net("mrsr", [1], [])
+    router(net, 1).cache.add((1, 2, 3, 4), 0)
+    router(net, 1).on_overheard(Rerr(3, 4, (3, 2, 9)), 3, 0)
+    assert router(net, 1).cache.paths() == ((1, 2), (1, 2, 3))
+
+
+def test_the_patience_with_a_request_counts_from_when_it_is_sent() -> None:
+    """3.3.3: one that waited in the card is no reason to ask the whole net."""
+    net = Net("mrsr", [1], [])
+    net.hold_ns = 40 * MS
+    net.offer(1, 2)
+    net.run(70 * MS)
+    assert [sent.time_ns for sent in net.of(Rreq)] == [0]
+    net.run(1 * MS)
+    assert [sent.time_ns for sent in net.of(Rreq)] == [0, 71 * MS]
 
 
 def test_requests_come_ever_more_rarely() -> None:
@@ -132,13 +174,10 @@ def test_requests_come_ever_more_rarely() -> None:
     net = Net("mrsr", [1], [])
     message = net.offer(1, 2)
     net.run(LONG)
-    asked = [
-        (s.time_ns // MS, s.packet.ttl, s.packet.normal)
-        for s in net.of(Rreq)
-        if isinstance(s.packet, Rreq)
-    ]
-    assert asked[:4] == [(0, 1, False), (30, 255, False), (530, 255, True), (1530, 255, True)]
-    assert [time for time, _, _ in asked[4:]] == [3530, 7530, 15530, 25530]
+    asked = [(s.packet.ttl, s.packet.normal) for s in net.of(Rreq) if isinstance(s.packet, Rreq)]
+    assert asked == [(1, False), (255, False), *[(255, True)] * 6]
+    waits = [b.time_ns - a.time_ns - HOP_NS for a, b in pairwise(net.of(Rreq))]
+    assert [wait // MS for wait in waits] == [30, 500, 1000, 2000, 4000, 8000, 10000]
     assert net.lost == [(message, Fate.NO_ROUTE)]
 
 

@@ -41,6 +41,27 @@ def test_a_broadcast_has_one_verdict_for_each_robot_present() -> None:
     assert [(v.receiver, v.fate) for v in verdicts] == [(2, Fate.DELIVERED), (3, Fate.BELOW_THRESHOLD)]
 
 
+def test_broadcasts_of_hidden_robots_collide_for_good() -> None:
+    """802.11-1999, 9.2.7: no RTS, no ACK, no repetition. 2 hears 1 and 3, who do not hear each other."""
+    mission = Mission(line(3, 5.0), STILL)
+    mission.cuts = (Cut((1,), (3,)),)
+    beacon = (message(BROADCAST, 100),)
+    verdicts = mission.run(4, {1: beacon, 3: beacon})
+    assert sorted((v.source, v.fate, v.attempts) for v in verdicts if v.receiver == 2) == [
+        (1, Fate.RETRY_LIMIT, (1,)),
+        (3, Fate.RETRY_LIMIT, (1,)),
+    ]
+
+
+def test_broadcasts_of_robots_that_hear_each_other_take_turns() -> None:
+    """9.2.5: handed over in the same instant, both draw a backoff, and seldom the same one."""
+    mission = Mission(line(3, 5.0), STILL)
+    beacon = (message(BROADCAST, 100),)
+    rounds = [mission.run(2, {1: beacon, 3: beacon}) for _ in range(100)]
+    collided = sum(v.fate is Fate.RETRY_LIMIT for r in rounds for v in r if v.receiver == 2)
+    assert 0 < collided < 20
+
+
 def test_a_message_to_oneself_or_to_a_stranger_ends_at_once() -> None:
     verdicts = Mission(line(2, 5.0), STILL).run(1, {1: (message(1), message(77))})
     assert [v.fate for v in verdicts] == [Fate.NO_ROUTE, Fate.RECEIVER_GONE]

@@ -24,6 +24,17 @@ def test_link_table_over_distance() -> None:
     assert table.threshold_bps == pytest.approx(0.5333e6)
 
 
+@pytest.mark.parametrize("fading", ["frame", "exchange"])
+@pytest.mark.parametrize("rts_threshold_bytes", [0, 2304])
+def test_link_table_agrees_with_the_closed_form(fading: str, rts_threshold_bytes: int) -> None:
+    section = RadioSection(fading=fading, rts_threshold_bytes=rts_threshold_bytes)  # type: ignore[arg-type]
+    near, far, deaf = link_table(section, (5.0, 12.0, 3000.0), 800, seed=1, seconds=60.0).rows
+    assert near.closed_form_bps == pytest.approx(near.throughput_bps, rel=0.01)
+    assert far.closed_form_bps == pytest.approx(far.throughput_bps, rel=0.03)
+    assert far.closed_form_bps < 0.995 * near.closed_form_bps
+    assert deaf.closed_form_bps == deaf.throughput_bps == 0.0
+
+
 def test_link_table_of_a_fast_rate_shows_bit_errors_before_the_threshold() -> None:
     sensitive = RadioSection(rate_mbps=11.0, receive_threshold_db=0.0, shadowing_db=0.0)
     (row,) = link_table(sensitive, (10 ** (53.5 / 20.0),), 800, seed=1, seconds=1.0).rows

@@ -24,6 +24,7 @@ _LOOKS: dict[str, tuple[float, str, str]] = {
     Mode.FOLLOWING: (0.32, "", "following"),
     Mode.NARROW: (0.32, "....", "in column"),
     Mode.BORDER: (0.62, "", "around obstacle"),
+    Mode.GIVING_WAY: (0.32, "//", "giving way"),
     Mode.SETUP: (0.10, "", "setup"),
     Mode.STOPPED: (0.10, "||", "stopped"),
 }

@@ -23,8 +23,11 @@ class DirectRouter:
         assert isinstance(packet, Data)
         self._host.deliver(packet, now)
 
-    def on_overheard(self, packet: object) -> None:
+    def on_overheard(self, packet: object, sender: int, now: int) -> None:
         """Others' control packets say nothing that this protocol uses."""
+
+    def on_broadcast(self, packet: object, now: int) -> None:
+        """Nothing waits for an answer."""
 
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
         """Nothing is kept that could be refreshed."""

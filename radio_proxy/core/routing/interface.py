@@ -60,8 +60,12 @@ class Router(Protocol):
         """A packet arrived from a neighbour; a Data already lists this robot in its path."""
         ...
 
-    def on_overheard(self, packet: object) -> None:
-        """A control packet for another robot was heard."""
+    def on_overheard(self, packet: object, sender: int, now: int) -> None:
+        """A control packet for another robot was heard; `sender` is the neighbour that sent it."""
+        ...
+
+    def on_broadcast(self, packet: object, now: int) -> None:
+        """A broadcast of this robot has left its card."""
         ...
 
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:

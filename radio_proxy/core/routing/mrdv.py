@@ -85,8 +85,11 @@ class MrdvRouter:
             self._report(self.table.heed_error(sender, packet.lost, now), now)
         self._flush(sender, now)
 
-    def on_overheard(self, packet: object) -> None:
+    def on_overheard(self, packet: object, sender: int, now: int) -> None:
         """Others' control packets say nothing that this protocol uses."""
+
+    def on_broadcast(self, packet: object, now: int) -> None:
+        """The patience with a request counts from its origination (RFC 3561, 6.3)."""
 
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:  # noqa: ARG002
         self.table.refresh(next_hop, now)

@@ -6,8 +6,9 @@ the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRex
 Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
 flag for normal forwarding. At the origin a message is searched for twice at most, and its time in the
 send buffer counts from when it was handed over. A robot that waits to reply out of its cache listens for
-others' replies, not for the origin's first data (8.2.5), because replies are the only frames of others
-that a card hands up here. A target answers the copies of a request that came no farther than the first
+others' replies, not for the origin's first data (8.2.5), and routes are learnt from others' replies and
+errors but not from their data (3.3.1), because control packets are the only frames of others that a card
+hands up here. A target answers the copies of a request that came no farther than the first
 one, because in one cell every neighbour passes one on.
 """
 
@@ -43,10 +44,12 @@ BLACKLIST_NS = 5000 * MS
 
 @dataclass(slots=True, eq=False)
 class Search:
-    """A discovery under way. sent: requests so far."""
+    """A discovery under way. sent: requests so far; number, patience [ns]: of the last one."""
 
     target: int
     sent: int = 0
+    number: int = 0
+    patience: int = 0
     waiting: list[Data] = field(default_factory=list)
 
 
@@ -90,12 +93,28 @@ class MrsrRouter:
             if packet.back[-1] != self._me:
                 self._host.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
 
-    def on_overheard(self, packet: object) -> None:
-        """Another robot's reply that is as short makes one's own needless (RFC 4728, 8.2.5)."""
+    def on_overheard(self, packet: object, sender: int, now: int) -> None:
+        """Others' replies and errors teach as one's own do (RFC 4728, 3.3.1).
+
+        A reply that is as short as the one that waits here makes that one needless (8.2.5).
+        """
         if isinstance(packet, Rrep):
             mine = self._pending.get((packet.found[0], packet.number))
             if mine is not None and len(packet.found) <= mine:
                 del self._pending[packet.found[0], packet.number]
+            here = packet.found.index(sender)
+            self.cache.add((self._me, *packet.found[here:]), now)
+            self.cache.add((self._me, *packet.found[here::-1]), now)
+            self._flush(now)
+        elif isinstance(packet, Rerr):
+            self.cache.forget_link(packet.a, packet.b)
+
+    def on_broadcast(self, packet: object, now: int) -> None:
+        """The patience with a request counts from when it is on the air."""
+        if isinstance(packet, Rreq) and packet.origin == self._me:
+            search = self._searches.get(packet.target)
+            if search is not None and search.number == packet.number:
+                self._host.at(now + search.patience, self._ask, search)
 
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
         """A confirmed link needs no mark: a path holds until it fails or is too old."""
@@ -147,8 +166,9 @@ class MrsrRouter:
         """Cache both directions of a route that lists this robot (RFC 4728, 8.1.4)."""
         if self._me in route:
             here = route.index(self._me)
-            self.cache.add(route[here:], now)
-            self.cache.add(route[: here + 1][::-1], now)
+            if here + 1 < len(route):
+                self.cache.add(route[here:], now)
+            self.cache.add(route[here::-1], now)
             self._flush(now)
 
     # Discovery by the origin.
@@ -185,11 +205,12 @@ class MrsrRouter:
             ttl=1 if first else HOP_LIMIT,
             normal=search.sent > 1,
         )
-        self._host.send(request, BROADCAST, request.size_bytes, "rreq", now)
         period = REQUEST_PERIOD_NS << max(0, search.sent - 1)
         search.sent += 1
-        patience = NONPROPAGATING_NS if first else min(period, MAX_REQUEST_PERIOD_NS)
-        self._host.at(now + patience, self._ask, search)
+        search.number = self._number
+        search.patience = NONPROPAGATING_NS if first else min(period, MAX_REQUEST_PERIOD_NS)
+        if not self._host.send(request, BROADCAST, request.size_bytes, "rreq", now):
+            self._host.at(now + search.patience, self._ask, search)
 
     def _on_waited_too_long(self, data: Data, now: int) -> None:
         search = self._searches.get(data.message.destination)
@@ -212,6 +233,8 @@ class MrsrRouter:
 
     def _flush(self, now: int) -> None:
         """Send whatever waited for a route that the cache has now (RFC 4728, 8.2.6)."""
+        if not self._searches:
+            return
         for target in sorted(self._searches):
             if self.cache.find(target, now) is not None:
                 found = tuple(self._searches[target].waiting)

@@ -10,24 +10,29 @@ Path = tuple[int, ...]
 
 
 class RouteCache:
-    """Paths that begin at one robot, the shortest first, the newest first among equals."""
+    """Paths that begin at one robot: when each expires [ns], by destination."""
 
     def __init__(self, robot: int) -> None:
         self._robot = robot
-        self._paths: dict[int, list[tuple[Path, int]]] = {}
+        self._paths: dict[int, dict[Path, int]] = {}
 
     def add(self, path: Path, now: int) -> None:
         """Learn a path to everyone on it; one with a loop or from elsewhere is refused."""
         if path[0] != self._robot or len(set(path)) != len(path):
             return
         for length in range(2, len(path) + 1):
-            self._add_one(path[:length], now + CACHE_TIMEOUT_NS)
+            known = self._paths.setdefault(path[length - 1], {})
+            known[path[:length]] = now + CACHE_TIMEOUT_NS
+            if len(known) > PATHS_PER_DESTINATION:
+                del known[_ranked(known)[-1]]
 
     def find(self, destination: int, now: int) -> Path | None:
-        """The best path to a destination."""
-        for path, expires in self._paths.get(destination, ()):
-            if expires > now:
-                return path
+        """The best path to a destination: the shortest, the newest among equals."""
+        known = self._paths.get(destination)
+        if known is not None:
+            for path in _ranked(known) if len(known) > 1 else known:
+                if known[path] > now:
+                    return path
         return None
 
     def forget_link(self, a: int, b: int) -> None:
@@ -35,22 +40,17 @@ class RouteCache:
 
         The part of a path before the break stands under its own destination.
         """
-        for destination in sorted(self._paths):
-            kept = [entry for entry in self._paths[destination] if not _uses(entry[0], a, b)]
-            if kept:
-                self._paths[destination] = kept
-            else:
+        for destination, known in tuple(self._paths.items()):
+            for path in tuple(known):
+                if a in path and b in path and abs(path.index(a) - path.index(b)) == 1:
+                    del known[path]
+            if not known:
                 del self._paths[destination]
 
     def paths(self) -> tuple[Path, ...]:
-        """Everything that is cached, by destination."""
-        return tuple(path for to in sorted(self._paths) for path, _ in self._paths[to])
-
-    def _add_one(self, path: Path, expires: int) -> None:
-        others = [entry for entry in self._paths.get(path[-1], ()) if entry[0] != path]
-        ranked = sorted([(path, expires), *others], key=lambda entry: len(entry[0]))
-        self._paths[path[-1]] = ranked[:PATHS_PER_DESTINATION]
+        """Everything that is cached, by destination, the best first."""
+        return tuple(path for to in sorted(self._paths) for path in _ranked(self._paths[to]))
 
 
-def _uses(path: Path, a: int, b: int) -> bool:
-    return any(path[i : i + 2] in ((a, b), (b, a)) for i in range(len(path) - 1))
+def _ranked(known: dict[Path, int]) -> list[Path]:
+    return sorted(known, key=lambda path: (len(path), -known[path], path))

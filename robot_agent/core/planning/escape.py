@@ -19,8 +19,9 @@ from onehop.contracts.messages import Note, Ranges
 from onehop.contracts.scenario import Briefing
 from robot_agent.core.planning.distbug import DistBug
 from robot_agent.core.planning.driving import Driver
-from robot_agent.core.planning.guidance import Guidance, Progress
-from robot_agent.core.planning.openings import NOTHING, Openings, edge_samples
+from robot_agent.core.planning.guidance import Guidance, Mates, Progress
+from robot_agent.core.planning.memory import NOTHING
+from robot_agent.core.planning.openings import Openings, edge_samples
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
 from robot_agent.core.planning.survey import Survey
@@ -48,6 +49,7 @@ class Escape:
     def __init__(self, briefing: Briefing, pose: Pose, rng: np.random.Generator) -> None:
         self.body, self.section, self.rng = briefing.body, briefing.planner, rng
         self.goal: FloatArray = np.array((briefing.goal.x, briefing.goal.y))
+        self.goal_x, self.goal_y = briefing.goal.x, briefing.goal.y
         self.tolerance = briefing.goal.tolerance
         self.fan = Fan(briefing.body)
         self.inflation = self.section.inflation
@@ -70,12 +72,12 @@ class Escape:
         self.progress = Progress.DRIVING
         self.survey: Survey | None = None
 
-    def step(self, pose: Pose, scan: Ranges, moving: frozenset[int]) -> Guidance:
+    def step(self, pose: Pose, scan: Ranges, mates: Mates) -> Guidance:
         """See Pathfinder."""
-        if math.dist((pose.x, pose.y), self.goal) <= 0.6 * self.tolerance:
+        if math.hypot(pose.x - self.goal_x, pose.y - self.goal_y) <= 0.6 * self.tolerance:
             self.progress = Progress.ARRIVED
         if self.progress is Progress.DRIVING and self._due(pose):
-            self._plan(pose, scan, moving)
+            self._plan(pose, scan, mates)
         twist = self._twist(pose, scan) if self.progress is Progress.DRIVING else STANDSTILL
         notes, self.notes = tuple(self.notes), []
         return Guidance(twist, self.progress, self.remaining, self.passage, self.waypoint, notes)
@@ -98,11 +100,11 @@ class Escape:
             return self.driver.turn_to(pose, self.turn)
         return self.driver.drive(pose, scan)
 
-    def _plan(self, pose: Pose, scan: Ranges, moving: frozenset[int]) -> None:
+    def _plan(self, pose: Pose, scan: Ranges, mates: Mates) -> None:
         """One planning moment: look, remember, choose."""
         self._account(pose)
         beside = self.afterimage.beside(pose, float(self.fan.angles[-1]))
-        view = View(self.fan, pose, scan, moving, 0.1 * self.inflation, beside)
+        view = View(self.fan, pose, scan, mates(), 0.1 * self.inflation, beside)
         self.afterimage.keep(view)
         draws = self.rng.random((self.section.samples, 2))
         samples = sample_fan(view, draws, pose.heading, math.pi, self.clearance)
@@ -118,7 +120,7 @@ class Escape:
         self.passage = passage_width(view, 8.0 * self.inflation)
         backtrack = self._choose(view, roadmap, costs, reach)
         way = np.array(self.driver.way) if self.turn is None else NO_POINTS
-        self.survey = Survey(pose, samples, roadmap.points, roadmap.edges, way, backtrack)
+        self.survey = Survey(pose, samples, roadmap, way, backtrack)
 
     def _account(self, pose: Pose) -> None:
         """Keep the record; a new one gives the search its whole budget back."""
@@ -158,23 +160,21 @@ class Escape:
         openings, memory = self.openings, self.openings.memory
         seeds = {n: cost for n, (_, cost) in sorted(reach.items())}
         seeds.setdefault(openings.place, math.dist((pose.x, pose.y), memory.xy[openings.place]))
-        cost, origin = memory.routes(seeds)
-        best = openings.best(cost, self.target) if self.phase is Phase.SEARCH else NOTHING
-        if best == NOTHING:
+        route = openings.best(seeds, self.target) if self.phase is Phase.SEARCH else None
+        if route is None or route.target == NOTHING:
             self._enter(Phase.RETURN)
-            best = openings.closest_place(cost)
-            if math.dist((pose.x, pose.y), memory.xy[best]) < 2.0 * self.inflation or self.tries > 6:
+            route = openings.closest_place(seeds)
+            near = math.dist((pose.x, pose.y), memory.xy[route.target]) < 2.0 * self.inflation
+            if near or self.tries > 6:
                 self.tries = 0
                 return []
+        best = route.target
         if best != self.target:
             self.target, self.tries = best, 0
             x, y = memory.xy[best].tolist()
             self.notes.append(Note("target", {"x": x, "y": y}))
-        self.remaining = cost[best] + math.dist(memory.xy[best], self.goal)
-        chain = [best]
-        while origin[chain[-1]] != NOTHING:
-            chain.append(origin[chain[-1]])
-        return chain
+        self.remaining = route.cost + math.dist(memory.xy[best], self.goal)
+        return route.chain()
 
     def _go(self, pose: Pose, roadmap: RoadMap, chain: list[int], reach: Reach) -> bool:
         """Take the way to the furthest way point of the chain (target first) that is in reach."""

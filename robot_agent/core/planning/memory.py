@@ -7,6 +7,8 @@ Its size is fixed when it is made; `nbytes` says it.
 
 import heapq
 import math
+from array import array
+from collections.abc import Iterator
 
 import numpy as np
 import numpy.typing as npt
@@ -16,7 +18,12 @@ from robot_agent.core.scan import FloatArray
 
 Indices = npt.NDArray[np.intp]
 
-PLACE, OPENING, CLOSED = 1, 2, 3
+NOTHING = -1
+"""Stands where no way point is."""
+
+PLACE, OPENING, CLOSED = 1, 2, 4
+"""Kinds of way points; their sums stand for several."""
+
 DEGREE = 8
 """Edges kept for each way point; the shortest stay."""
 
@@ -31,14 +38,14 @@ class WayPoints:
         self.kind = np.zeros(capacity, dtype=np.uint8)
         self._closed = 0
         self._closed_as = np.zeros(capacity, dtype=np.int64)
-        self._peer = np.full((capacity, DEGREE), -1, dtype=np.int32)
-        self._length = np.full((capacity, DEGREE), np.inf)
+        self._peer = array("i", [NOTHING]) * (capacity * DEGREE)
+        self._length = array("d", [math.inf]) * (capacity * DEGREE)
 
     @property
     def nbytes(self) -> int:
         """Bytes that the memory takes, full or empty."""
-        arrays = (self.xy, self.kind, self._closed_as, self._peer, self._length)
-        return int(sum(array.nbytes for array in arrays))
+        edges = sum(column.itemsize * len(column) for column in (self._peer, self._length))
+        return self.xy.nbytes + self.kind.nbytes + self._closed_as.nbytes + edges
 
     @property
     def has_room(self) -> bool:
@@ -62,53 +69,59 @@ class WayPoints:
         self.kind[number] = CLOSED
         self._closed += 1
         self._closed_as[number] = self._closed
-        for peer in self._peer[number][self._peer[number] >= 0].tolist():
-            self.part(number, peer)
+        for peer in self._peer[number * DEGREE : (number + 1) * DEGREE]:
+            if peer != NOTHING:
+                self.part(number, peer)
 
-    def of_kind(self, *kinds: int) -> Indices:
-        """Numbers of the way points of these kinds, ascending."""
-        return np.flatnonzero(np.isin(self.kind[: self.count], kinds))
+    def of_kind(self, kinds: int) -> Indices:
+        """Numbers of the way points of this kind, or of these (a sum), ascending."""
+        return np.flatnonzero(self.kind[: self.count] & kinds)
 
     def join(self, a: int, b: int, length: float) -> None:
         """An edge between two way points; of parallel ones the shorter stays."""
         if a == b:
             return
         for one, other in ((a, b), (b, a)):
-            row = self._peer[one]
-            same = np.flatnonzero(row == other)
-            slot = int(same[0]) if len(same) else int(np.argmax(self._length[one]))
-            if length < self._length[one, slot]:
-                row[slot] = other
-                self._length[one, slot] = length
+            first = one * DEGREE
+            peers, lengths = self._peer[first : first + DEGREE], self._length[first : first + DEGREE]
+            slot = peers.index(other) if other in peers else lengths.index(max(lengths))
+            if length < lengths[slot]:
+                self._peer[first + slot] = other
+                self._length[first + slot] = length
 
     def part(self, a: int, b: int) -> None:
         """Take an edge away that turned out to be blocked."""
         for one, other in ((a, b), (b, a)):
-            same = self._peer[one] == other
-            self._peer[one, same] = -1
-            self._length[one, same] = np.inf
+            for slot in range(one * DEGREE, (one + 1) * DEGREE):
+                if self._peer[slot] == other:
+                    self._peer[slot], self._length[slot] = NOTHING, math.inf
 
-    def nearest(self, x: float, y: float, *kinds: int) -> tuple[int, float]:
-        """The nearest way point of these kinds and its distance [m]; (-1, inf) if there is none."""
-        numbers = self.of_kind(*kinds)
+    def nearest(self, x: float, y: float, kinds: int) -> tuple[int, float]:
+        """The nearest way point of these kinds and its distance [m]; (NOTHING, inf) if there is none."""
+        numbers = self.of_kind(kinds)
         if not len(numbers):
-            return -1, math.inf
+            return NOTHING, math.inf
         distance2 = squared_distances(np.array(((x, y),)), self.xy[numbers])[0]
         best = int(np.argmin(distance2))
         return int(numbers[best]), math.sqrt(float(distance2[best]))
 
-    def routes(self, seeds: dict[int, float]) -> tuple[dict[int, float], dict[int, int]]:
-        """Dijkstra from seeds with their costs: cost of each way point, and where it came from."""
+    def routes(self, seeds: dict[int, float], origin: dict[int, int]) -> Iterator[tuple[int, float]]:
+        """Dijkstra from seeds with their costs: way points and their costs [m], the cheapest first.
+
+        origin: filled on the way with where each way point was reached from; NOTHING for a seed. The
+        caller stops when it knows enough.
+        """
         cost = dict(seeds)
-        origin = dict.fromkeys(seeds, -1)
+        origin.update(dict.fromkeys(seeds, NOTHING))
         heap = sorted((length, number) for number, length in seeds.items())
         while heap:
             length, here = heapq.heappop(heap)
             if length > cost[here]:
                 continue
-            peers, steps = self._peer[here].tolist(), self._length[here].tolist()
+            yield here, length
+            first = here * DEGREE
+            peers, steps = self._peer[first : first + DEGREE], self._length[first : first + DEGREE]
             for there, step in zip(peers, steps, strict=True):
-                if there >= 0 and length + step < cost.get(there, math.inf):
+                if there != NOTHING and length + step < cost.get(there, math.inf):
                     cost[there], origin[there] = length + step, here
                     heapq.heappush(heap, (length + step, there))
-        return cost, origin

@@ -7,23 +7,40 @@ has the least sum of the known way to it and the straight distance from it to th
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, wrap_angle
-from robot_agent.core.planning.memory import CLOSED, OPENING, PLACE, WayPoints
+from robot_agent.core.planning.memory import CLOSED, NOTHING, OPENING, PLACE, WayPoints
 from robot_agent.core.planning.roadmap import RoadMap
 from robot_agent.core.planning.view import BoolArray, View, squared_distances
 from robot_agent.core.scan import FloatArray
-
-NOTHING = -1
 
 Edge = tuple[FloatArray, FloatArray]
 """Points at the edge of the unseen, (n, 2) [m], and the direction to the unseen side, (n,) [rad]."""
 
 MOST_MOVES = 8
 """Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
+
+
+class Route(NamedTuple):
+    """A way over way points to `target`, `cost` long [m]; target NOTHING: there is none.
+
+    origin: where each way point on it is reached from.
+    """
+
+    target: int
+    cost: float
+    origin: dict[int, int]
+
+    def chain(self) -> list[int]:
+        """Its way points, the target first."""
+        chain = [self.target]
+        while self.origin[chain[-1]] != NOTHING:
+            chain.append(self.origin[chain[-1]])
+        return chain
 
 
 class Openings:
@@ -46,7 +63,7 @@ class Openings:
 
     def in_view(self, view: View) -> list[int]:
         """Places and openings in view, ascending."""
-        numbers = self.memory.of_kind(PLACE, OPENING)
+        numbers = self.memory.of_kind(PLACE + OPENING)
         return [int(n) for n in numbers[view.visible(self.memory.xy[numbers])]]
 
     def note_place(self, pose: Pose, reach: dict[int, float], laser_range: float) -> None:
@@ -181,23 +198,37 @@ class Openings:
         self.gaze[number] = outward[nearest]
         return True
 
-    def best(self, cost: dict[int, float], kept: int) -> int:
-        """The reachable opening with the least g + h; `kept` stays unless another is clearly better."""
-        memory = self.memory
-        value = {
-            n: cost[n] + math.dist(memory.xy[n], self.goal)
-            for n in memory.of_kind(OPENING).tolist()
-            if n in cost
-        }
-        if not value:
-            return NOTHING
-        best = min(value, key=lambda n: (value[n], n))
-        return kept if value.get(kept, math.inf) <= value[best] + self.spacing else best
+    def best(self, seeds: dict[int, float], kept: int) -> Route:
+        """To the reachable opening with the least g + h; `kept` stays unless another is clearly better.
 
-    def closest_place(self, cost: dict[int, float]) -> int:
-        """The reachable place that is closest to the goal."""
-        places: list[int] = [n for n in self.memory.of_kind(PLACE).tolist() if n in cost]
-        return min(places, key=lambda n: (math.dist(self.memory.xy[n], self.goal), n))
+        seeds: way points in reach and their costs [m]. No opening that costs more than the best one's
+        g + h can be better, so the search ends there.
+        """
+        memory = self.memory
+        origin: dict[int, int] = {}
+        best, value, kept_cost, best_cost = NOTHING, math.inf, math.inf, math.inf
+        for number, cost in memory.routes(seeds, origin):
+            if cost > value + self.spacing:
+                break
+            if memory.kind[number] == OPENING:
+                estimate = cost + math.dist(memory.xy[number], self.goal)
+                if (estimate, number) < (value, best):
+                    best, value, best_cost = number, estimate, cost
+                if number == kept:
+                    kept_cost, kept_value = cost, estimate
+        if kept_cost < math.inf and kept_value <= value + self.spacing:
+            return Route(kept, kept_cost, origin)
+        return Route(best, best_cost, origin)
+
+    def closest_place(self, seeds: dict[int, float]) -> Route:
+        """To the reachable place that is closest to the goal."""
+        memory = self.memory
+        origin: dict[int, int] = {}
+        costs = {
+            number: cost for number, cost in memory.routes(seeds, origin) if memory.kind[number] == PLACE
+        }
+        best = min(costs, key=lambda n: (math.dist(memory.xy[n], self.goal), n))
+        return Route(best, costs[best], origin)
 
 
 def edge_samples(view: View, margin: float) -> FloatArray:

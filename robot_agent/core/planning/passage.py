@@ -24,10 +24,14 @@ def passage_width(view: View, ahead: float) -> float:
     c, s = elementary.cos(view.pose.heading), elementary.sin(view.pose.heading)
     rest = view.obstacles - view.origin
     forward, left = c * rest[:, 0] + s * rest[:, 1], c * rest[:, 1] - s * rest[:, 0]
-    width = math.inf
-    for start in np.arange(-0.5 * SLICE, ahead - 0.5 * SLICE, 0.5 * SLICE):
-        inside = left[(forward >= start) & (forward < start + SLICE)]
-        to_left, to_right = inside[inside > 0.0], inside[inside <= 0.0]
-        if len(to_left) and len(to_right):
-            width = min(width, float(to_left.min() - to_right.max()))
-    return width
+    halves = int(2.0 * ahead / SLICE) + 1
+    half = np.floor(2.0 * forward / SLICE).astype(np.intp) + 1
+    near = (half >= 0) & (half < halves)
+    half, left = half[near], left[near]
+    to_left, to_right = np.full(halves, np.inf), np.full(halves, -np.inf)
+    beside = left > 0.0
+    np.minimum.at(to_left, half[beside], left[beside])
+    np.maximum.at(to_right, half[~beside], left[~beside])
+    to_left = np.minimum(to_left[:-1], to_left[1:])
+    to_right = np.maximum(to_right[:-1], to_right[1:])
+    return float((to_left - to_right).min(initial=math.inf))

@@ -5,6 +5,7 @@ from typing import Protocol
 
 from onehop.contracts.geometry import Pose
 from robot_agent.core.planning.guidance import Pathfinder
+from robot_agent.core.planning.roadmap import RoadMap
 from robot_agent.core.scan import FloatArray
 
 
@@ -12,15 +13,13 @@ from robot_agent.core.scan import FloatArray
 class Survey:
     """One planning moment, map frame [m].
 
-    samples: (n, 2) points drawn. points: (m, 2) of the road map, edges: (k, 4) x0, y0, x1, y1.
-    way: (p, 2) taken, ending at the virtual goal; empty when the robot only turns. backtrack: it goes
-    back to where it was.
+    samples: (n, 2) points drawn. roadmap: what was made of them. way: (p, 2) taken, ending at the
+    virtual goal; empty when the robot only turns. backtrack: it goes back to where it was.
     """
 
     pose: Pose
     samples: FloatArray
-    points: FloatArray
-    edges: FloatArray
+    roadmap: RoadMap
     way: FloatArray
     backtrack: bool
 

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts import elementary
-from onehop.contracts.geometry import TAU, Pose
+from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Ranges
 from robot_agent.core.scan import Fan, FloatArray
 
@@ -59,24 +59,34 @@ class View:
         )
         hits = self.origin + self.directions[solid] * self.sight[solid, None]
         self.obstacles: FloatArray = np.concatenate((_outline(hits, grain), beside))
+        self._shown_to = _shown_to(self.sight)
+        have = squared_distances(self.origin[None], self.obstacles)[0]
+        self._kept = np.maximum(np.sqrt(have) - np.float32(0.01), np.float32(0.0)) ** 2
 
     def polar(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Bearing [rad, relative to the heading, in [-pi, pi]] and distance [m] of (n, 2) points."""
+        """Bearing [rad, relative to the heading, in (-pi, pi]] and distance [m] of (n, 2) points."""
+        ahead, left = self.local(points)
+        return elementary.directions(left, ahead), elementary.lengths(ahead, left)
+
+    def local(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """How far (n, 2) points lie ahead and to the left of the robot, (n,) each [m]."""
+        c, s = elementary.cos(self.pose.heading), elementary.sin(self.pose.heading)
         dx, dy = points[:, 0] - self.pose.x, points[:, 1] - self.pose.y
-        bearing = elementary.directions(dy, dx) - self.pose.heading
-        return bearing - TAU * np.rint(bearing / TAU), elementary.lengths(dx, dy)
+        return c * dx + s * dy, c * dy - s * dx
 
     def visible(self, points: FloatArray) -> BoolArray:
         """Which (n, 2) points lie in front of what both neighbouring beams hit."""
-        bearing, distance = self.polar(points)
-        angles = self.fan.angles
-        step = angles[1] - angles[0]
-        place = (bearing - angles[0]) / step
-        inside = (place >= -1e-6) & (place <= len(angles) - 1 + 1e-6)
-        low = np.clip(np.floor(place).astype(np.intp), 0, len(angles) - 1)
-        high = np.minimum(low + 1, len(angles) - 1)
-        shown: BoolArray = inside & (distance <= np.minimum(self.sight[low], self.sight[high]))
-        return shown
+        return self.shows(*self.local(points))
+
+    def shows(self, ahead: FloatArray, left: FloatArray) -> BoolArray:
+        """The same for places ahead and to the left of the robot, any shape [m]."""
+        first, last = self.fan.angles[0], self.fan.angles[-1]
+        place = np.arctan2(left, ahead)  # becomes a whole number: its last bits do not count
+        place -= first
+        place *= (len(self.fan.angles) - 1) / (last - first)
+        place += 1.0 + 1e-6
+        beam = np.clip(place, 0.0, len(self._shown_to) - 1.0, out=place).astype(np.intp)
+        return np.asarray(ahead * ahead + left * left <= self._shown_to[beam])
 
     def surrounded(self, points: FloatArray, margin: float) -> BoolArray:
         """Which (n, 2) points are so far inside the field of view that nothing unseen beside its edge
@@ -92,8 +102,7 @@ class View:
         It is `clearance`, but never more than the robot has now: who starts inside an inflated
         obstacle may move out of it, not further in.
         """
-        have = squared_distances(self.origin[None], self.obstacles)[0]
-        return np.asarray(np.minimum(clearance * clearance, np.maximum(np.sqrt(have) - 0.01, 0.0) ** 2))
+        return np.asarray(np.minimum(np.float32(clearance * clearance), self._kept))
 
     def free(self, points: FloatArray, clearance: float) -> tuple[BoolArray, FloatArray]:
         """Which (n, 2) points keep `clearance` (or the allowance), and the room of each, (n,) [m]."""
@@ -140,34 +149,46 @@ class Afterimage:
         self.points = points[order[: self.capacity]]
 
 
+def _shown_to(sight: FloatArray) -> FloatArray:
+    """How far squared everything is shown between each beam and the next, (n_beams + 2,) [m2].
+
+    The last beam counts as the space beyond it, up to rounding; outside of the fan nothing is shown.
+    """
+    shown = np.full(len(sight) + 2, -1.0)
+    np.minimum(sight[:-1], sight[1:], out=shown[1:-2])
+    shown[-2] = sight[-1]
+    shown[1:-1] *= shown[1:-1]
+    return shown
+
+
 def _outline(hits: FloatArray, grain: float) -> FloatArray:
     """The same outline with other points: one for each step of `grain` along it where hits are dense,
     and one more between hits that are too far apart to see a wall by, but not far enough to pass.
     """
     if len(hits) < 3:
         return hits
-    step = elementary.lengths(*np.diff(hits, axis=0).T)
+    leg = hits[1:] - hits[:-1]
+    step = elementary.lengths(leg[:, 0], leg[:, 1])
     cell = np.floor(np.cumsum(np.minimum(step, grain)) / grain)
-    keep = np.concatenate(([True], np.diff(cell, prepend=0.0) > 0))
-    keep[-1] = True
-    wide = np.flatnonzero((step > 5.0 * grain) & ((step < 20.0 * grain) | _same_wall(hits, step)))
-    between = [
-        hits[i]
-        + (hits[i + 1] - hits[i]) * np.linspace(0.0, 1.0, 2 + int(step[i] / (5.0 * grain)))[1:-1, None]
-        for i in wide.tolist()
-    ]
-    return np.concatenate((hits[keep], *between))
+    keep = np.ones(len(hits), dtype=np.bool_)
+    keep[1] = cell[0] > 0.0
+    keep[2:-1] = cell[1:-1] > cell[:-2]
+    wide = np.flatnonzero((step > 5.0 * grain) & ((step < 20.0 * grain) | _same_wall(leg, step)))
+    more = (step[wide] / (5.0 * grain)).astype(np.intp)
+    first = np.repeat(wide, more)
+    place = np.arange(1, len(first) + 1) - np.repeat(np.cumsum(more) - more, more)
+    between = hits[first] + leg[first] * (place / np.repeat(more + 1, more))[:, None]
+    return np.concatenate((hits[keep], between))
 
 
-def _same_wall(hits: FloatArray, step: FloatArray) -> BoolArray:
-    """Which gaps between consecutive hits lie in line with the hits around them and are no wider than
-    theirs: a wall that the beams graze, not a way through it.
+def _same_wall(leg: FloatArray, step: FloatArray) -> BoolArray:
+    """Which gaps between consecutive hits lie in line with the gap before or after them and are not
+    much wider: a wall that the beams graze, not a way through it. leg: (n, 2) gaps [m], step: lengths.
     """
-    direction = elementary.directions(*np.diff(hits, axis=0).T[::-1])
+    turn = (leg[1:] * leg[:-1]).sum(axis=1) > 0.99 * step[1:] * step[:-1]
     straight = np.zeros(len(step), dtype=np.bool_)
-    for side in (-1, 1):
-        other, gap = np.roll(direction, side), np.roll(step, side)
-        straight |= (elementary.cosines(direction - other) > 0.99) & (step < 1.6 * gap)
+    straight[1:] = turn & (step[1:] < 1.6 * step[:-1])
+    straight[:-1] |= turn & (step[:-1] < 1.6 * step[1:])
     return straight
 
 
@@ -179,10 +200,9 @@ def squared_distances(a: FloatArray, b: FloatArray) -> Float32Array:
     """
     if not len(a) or not len(b):
         return np.empty((len(a), len(b)), dtype=np.float32)
-    ax, ay = _single(a, a[0])
-    bx, by = _single(b, a[0])
-    dx = ax[:, None] - bx
-    dy = ay[:, None] - by
+    single_a, single_b = (a - a[0]).astype(np.float32), (b - a[0]).astype(np.float32)
+    dx: Float32Array = single_a[:, :1] - single_b[:, 0]
+    dy = single_a[:, 1:] - single_b[:, 1]
     dx *= dx
     dy *= dy
     dx += dy
@@ -194,9 +214,9 @@ def segment_distances2(a: FloatArray, b: FloatArray, points: FloatArray) -> Floa
     result = np.empty((len(a), len(points)), dtype=np.float32)
     if not result.size:
         return result
-    ax, ay = _single(a, a[0])
-    bx, by = _single(b, a[0])
-    ox, oy = _single(points, a[0])
+    ax, ay = (a - a[0]).astype(np.float32).T
+    bx, by = (b - a[0]).astype(np.float32).T
+    ox, oy = (points - a[0]).astype(np.float32).T.copy()
     dx, dy = bx - ax, by - ay
     over_length2 = np.float32(1.0) / np.maximum(dx * dx + dy * dy, np.float32(1e-9))
     rows = max(1, BLOCK // len(points))
@@ -215,8 +235,3 @@ def segment_distances2(a: FloatArray, b: FloatArray, points: FloatArray) -> Floa
         py *= py
         px += py
     return result
-
-
-def _single(points: FloatArray, origin: FloatArray) -> tuple[Float32Array, Float32Array]:
-    """Both coordinates relative to an origin, (n,) float32 each [m]."""
-    return (points[:, 0] - origin[0]).astype(np.float32), (points[:, 1] - origin[1]).astype(np.float32)

@@ -4,6 +4,8 @@ from pathlib import Path
 
 import pytest
 from mcap.reader import make_reader
+from mcap.records import Message, Metadata
+from mcap.stream_reader import StreamReader
 
 from onehop.contracts.errors import LogError
 from onehop.drive.log_reader import LogFile, digest
@@ -49,6 +51,14 @@ def test_the_official_reader_sees_the_wire_channels(recorded: tuple[Path, str]) 
     assert {channel.message_encoding for channel in wire} == {"msgpack"}
     assert {channel.schema_id for channel in wire} == {0}
     assert "/wire/obs/1" in {channel.topic for channel in wire}
+
+
+def test_the_outcome_is_the_last_word(recorded: tuple[Path, str]) -> None:
+    with recorded[0].open("rb") as stream:
+        records = list(StreamReader(stream).records)
+    outcome = [place for place, one in enumerate(records) if isinstance(one, Metadata)][-1]
+    assert records[outcome].name == "outcome"
+    assert outcome > max(place for place, one in enumerate(records) if isinstance(one, Message))
 
 
 @pytest.mark.parametrize("share", [0.3, 0.7, 0.99])
