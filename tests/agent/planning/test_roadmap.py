@@ -45,7 +45,7 @@ def road_map(view: View, seed: int = 1, samples: int = 200) -> RoadMap:
 
 @pytest.mark.parametrize("heading", [0.0, 0.9, 0.4, -0.5])
 def test_every_edge_keeps_the_inflation_from_the_outline_through_the_hits(heading: float) -> None:
-    """However far away: neighbouring hits up to 1 m apart (20 grains) stand for the wall between them."""
+    """However far away: hits up to 1 m apart (20 grains) stand for the wall between them."""
     view = look(BLOCKS, 10.0, 11.0, heading)
     roadmap = road_map(view)
     hits = view.origin + view.directions[view.solid] * view.sight[view.solid, None]
