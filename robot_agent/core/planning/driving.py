@@ -27,6 +27,11 @@ SLIDE = math.pi / 2 + 0.12
 """Bearing that a too near obstacle gets while the robot slides past it [rad]."""
 
 
+TURNS_AWAY = 0.3
+"""Turn rate from which a way leads past what is ahead [rad/s]: then turning suffices. Sliding along the
+nearest obstacle instead, a robot could swing to and fro between two for ever."""
+
+
 class Driver:
     """Follows one way after the other. period: of a tick [s]. clearance: to keep from obstacles [m]."""
 
@@ -118,6 +123,8 @@ class Driver:
             self.shielded = 0
             return twist
         self.shielded += 1
+        if ahead and abs(twist.w) > TURNS_AWAY:
+            return Twist(0.0, twist.w)
         return self._slide(float(self.fan.angles[int(np.argmin(scan))]), twist, ahead)
 
     def _slide(self, obstacle: float, twist: Twist, ahead: bool) -> Twist:

@@ -49,6 +49,10 @@ def sample_fan(view: View, draws: FloatArray, centre: float, half: float, margin
 class RoadMap:
     """Points known to be free, with edges known to be clear. Point 0 is the robot (virtual start).
 
+    Guarantee: with a clearance 4 % above the inflation, every edge keeps the inflation from the outline
+    drawn through neighbouring hits up to 20 grains apart, or as much as the robot has already. What no
+    beam hit is not covered: a corner between two hits stands out by up to half of their distance.
+
     points: (n, 2) float64 [m]. marks: (n,) index of the extra point that a point is, or -1.
     direct: (n,) cost of the straight way from the robot [m], inf where it is not clear. neighbours:
     (width, n) what else each point is joined to, and costs of these edges, inf where there are fewer.

@@ -110,7 +110,7 @@ def test_no_way_is_the_answer_for_a_closed_room_in_bounded_time() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_escape_leaves_three_walls_nine_metres_apart(seed: int) -> None:
-    """Thesis 4.1 and chapter 5: the trap less than 10 m wide that Algorithm 2 cannot leave."""
+    """Thesis 4.1: three walls less than 10 m wide. How often Algorithm 2 fails there: bench/traps.py."""
     assert_arrived(solo(*alone(field(THREE_WALLS), (20.0, 50.0, 0.0), (90.0, 50.0), seed=seed)))
 
 
