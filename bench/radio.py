@@ -8,7 +8,8 @@ same kind of cores. It does not run here, so the ratio is against that record an
 import json
 import time
 from collections.abc import Callable
-from dataclasses import replace
+
+from msgspec import structs
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Fate, Offer, Presence, Transmission, Truth
@@ -132,7 +133,7 @@ def sparse(robots: int) -> dict[str, object]:
     for outboxes in ({}, talk):
         mission = Mission(robots, 80.0, section)
         first, second, *others = mission.present
-        near = replace(second, pose=Pose(first.pose.x + 1.0, first.pose.y, 0.0))
+        near = structs.replace(second, pose=Pose(first.pose.x + 1.0, first.pose.y, 0.0))
         mission.present = (first, near, *others)
         for _ in range(20 * TICKS_PER_SECOND):
             mission.step(outboxes)
