@@ -19,7 +19,7 @@ from onehop.contracts.geometry import Pose
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario, robot_briefing
 from onehop.contracts.sections import GoalSection, MapSection, RobotSection
-from robot_agent.core.planning import make_pathfinder, nobody
+from robot_agent.core.planning import make_pathfinder
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
 from robot_agent.core.planning.view import NO_POINTS, View
 from robot_agent.core.scan import Fan
@@ -37,7 +37,7 @@ def scene() -> tuple[View, RobotSection]:
     body = RobotSection()
     walls = load_map(MapSection(width=30.0, height=30.0, obstacles=BLOCKS), {})
     scan = Laser(walls, body).scans(np.array([(10.0, 11.0, 0.0)]), np.zeros(1, dtype=np.int32))[0]
-    return View(Fan(body), Pose(10.0, 11.0, 0.0), scan, frozenset(), 0.05), body
+    return View(Fan(body), Pose(10.0, 11.0, 0.0), scan, 0.05), body
 
 
 def local_plan(rounds: int) -> dict[str, float]:
@@ -47,7 +47,7 @@ def local_plan(rounds: int) -> dict[str, float]:
     fan, random, took = Fan(body), generator(1, "bench"), []
     for _ in range(rounds):
         began = time.process_time()
-        look = View(fan, view.pose, scan, frozenset(), 0.05)
+        look = View(fan, view.pose, scan, 0.05)
         samples = sample_fan(look, random.random((200, 2)), 0.0, math.pi / 2, 0.52)
         roadmap = RoadMap(look, samples, NO_POINTS, 0.52, 0.7)
         left = np.hypot(*(roadmap.points - (25.0, 14.0)).T)
@@ -131,7 +131,7 @@ def following(ticks: int) -> dict[str, float]:
         scan = laser.scans(pose, np.zeros(1, dtype=np.int32))[0]
         place, before = Pose(*map(float, pose[0])), finder.survey
         began = time.perf_counter()
-        twist = finder.step(place, scan, nobody).twist
+        twist = finder.step(place, scan).twist
         took = (time.perf_counter() - began) * 1e6
         every.append(took)
         if finder.survey is before:

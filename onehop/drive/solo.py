@@ -15,7 +15,7 @@ from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Note
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario, robot_briefing
-from robot_agent.core.planning import Progress, make_pathfinder, nobody
+from robot_agent.core.planning import Progress, make_pathfinder
 from robot_agent.core.planning.survey import Survey
 from robot_agent.core.scan import FloatArray
 from world_server.core.laser import Laser
@@ -89,7 +89,7 @@ def solo(scenario: Scenario, walls: WallMap) -> Solo:
     for tick in range(int(scenario.clock.limit_s * 1000 / scenario.clock.period_ms)):
         scan = laser.scans(poses, looking)[0]
         began = time.perf_counter()
-        guidance = finder.step(Pose(*map(float, poses[0])), scan, nobody)
+        guidance = finder.step(Pose(*map(float, poses[0])), scan)
         took = time.perf_counter() - began
         notes += [(tick, note) for note in guidance.notes]
         if finder.survey is not None and finder.survey is not seen:

@@ -105,7 +105,7 @@ class Leader:
         if self._pathfinder is None:
             self._pathfinder = self._make_pathfinder(self._briefing, pose, self._rng)
         mates = self._mates(protocol, now_ns, pose, scan)
-        guidance = self._pathfinder.step(pose, painted(scan, mates), frozenset)
+        guidance = self._pathfinder.step(pose, painted(scan, mates))
         self.notes = guidance.notes
         self.remaining = guidance.remaining
         if guidance.progress is not Progress.DRIVING:

@@ -31,8 +31,8 @@ class Straight:
         del pose, rng
         self._goal, self._speed = briefing.goal, briefing.body.leader_speed
 
-    def step(self, pose: Pose, scan: Ranges, moving: frozenset[int]) -> Guidance:
-        del scan, moving
+    def step(self, pose: Pose, scan: Ranges) -> Guidance:
+        del scan
         dx, dy = self._goal.x - pose.x, self._goal.y - pose.y
         remaining = math.hypot(dx, dy)
         bearing = wrap_angle(math.atan2(dy, dx) - pose.heading)

@@ -101,8 +101,8 @@ def test_a_robot_backs_up_only_where_it_may_do_so_blindly():
 class BackingUp:
     """Way-finding that wants to drive backwards."""
 
-    def step(self, pose, scan, moving):
-        del scan, moving
+    def step(self, pose, scan):
+        del scan
         way = Twist(-1.0, 0.0)
         return Guidance(way, Progress.DRIVING, 9.0, math.inf, (pose.x - 9.0, pose.y), ())
 

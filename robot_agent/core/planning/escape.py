@@ -19,7 +19,7 @@ from onehop.contracts.messages import Note, Ranges
 from onehop.contracts.scenario import Briefing
 from robot_agent.core.planning.distbug import DistBug
 from robot_agent.core.planning.driving import Driver
-from robot_agent.core.planning.guidance import Guidance, Mates, Progress
+from robot_agent.core.planning.guidance import Guidance, Progress
 from robot_agent.core.planning.memory import NOTHING
 from robot_agent.core.planning.openings import Openings, edge_samples
 from robot_agent.core.planning.passage import passage_width
@@ -72,12 +72,12 @@ class Escape:
         self.progress = Progress.DRIVING
         self.survey: Survey | None = None
 
-    def step(self, pose: Pose, scan: Ranges, mates: Mates) -> Guidance:
+    def step(self, pose: Pose, scan: Ranges) -> Guidance:
         """See Pathfinder."""
         if math.hypot(pose.x - self.goal_x, pose.y - self.goal_y) <= 0.6 * self.tolerance:
             self.progress = Progress.ARRIVED
         if self.progress is Progress.DRIVING and self._due(pose):
-            self._plan(pose, scan, mates)
+            self._plan(pose, scan)
         twist = self._twist(pose, scan) if self.progress is Progress.DRIVING else STANDSTILL
         notes, self.notes = tuple(self.notes), []
         return Guidance(twist, self.progress, self.remaining, self.passage, self.waypoint, notes)
@@ -100,11 +100,11 @@ class Escape:
             return self.driver.turn_to(pose, self.turn)
         return self.driver.drive(pose, scan)
 
-    def _plan(self, pose: Pose, scan: Ranges, mates: Mates) -> None:
+    def _plan(self, pose: Pose, scan: Ranges) -> None:
         """One planning moment: look, remember, choose."""
         self._account(pose)
         beside = self.afterimage.beside(pose, float(self.fan.angles[-1]))
-        view = View(self.fan, pose, scan, mates(), 0.1 * self.inflation, beside)
+        view = View(self.fan, pose, scan, 0.1 * self.inflation, beside)
         self.afterimage.keep(view)
         draws = self.rng.random((self.section.samples, 2))
         samples = sample_fan(view, draws, pose.heading, math.pi, self.clearance)

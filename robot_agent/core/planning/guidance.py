@@ -1,6 +1,5 @@
 """The interface between way-finding and the team: what a leader asks at every tick, and what it gets."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
@@ -34,18 +33,9 @@ class Guidance:
     notes: tuple[Note, ...]
 
 
-Mates = Callable[[], frozenset[int]]
-"""Says which beams of this tick's scan hit team mates; asked only at a planning moment."""
-
-
-def nobody() -> frozenset[int]:
-    """Mates of a robot that is alone."""
-    return frozenset()
-
-
 class Pathfinder(Protocol):
     """A way-finding method. One instance serves one leadership; a new leader starts a new one."""
 
-    def step(self, pose: Pose, scan: Ranges, mates: Mates) -> Guidance:
+    def step(self, pose: Pose, scan: Ranges) -> Guidance:
         """Decide the twist for this tick."""
         ...

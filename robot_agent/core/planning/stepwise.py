@@ -19,7 +19,7 @@ from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Note, Ranges
 from onehop.contracts.scenario import Briefing
 from robot_agent.core.planning.driving import Driver
-from robot_agent.core.planning.guidance import Guidance, Mates, Progress
+from robot_agent.core.planning.guidance import Guidance, Progress
 from robot_agent.core.planning.obstacle import TURNS, Obstacle, classify, fan_direction
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan
@@ -54,26 +54,26 @@ class Stepwise:
         self.survey: Survey | None = None
         self.notes: list[Note] = []
 
-    def step(self, pose: Pose, scan: Ranges, mates: Mates) -> Guidance:
+    def step(self, pose: Pose, scan: Ranges) -> Guidance:
         """See Pathfinder."""
         remaining = math.dist((pose.x, pose.y), self.goal)
         if remaining <= 0.6 * self.tolerance:
             self.progress = Progress.ARRIVED
         twist = STANDSTILL
         if self.progress is Progress.DRIVING:
-            twist = self._drive(pose, scan, mates)
+            twist = self._drive(pose, scan)
         notes, self.notes = tuple(self.notes), []
         return Guidance(twist, self.progress, remaining, self.passage, self.waypoint, notes)
 
-    def _drive(self, pose: Pose, scan: Ranges, mates: Mates) -> Twist:
+    def _drive(self, pose: Pose, scan: Ranges) -> Twist:
         if self.facing is not None:
             if abs(wrap_angle(self.facing - pose.heading)) > 0.02:
                 return self.driver.turn_to(pose, self.facing)
             self.facing = None
-            self._plan(pose, scan, mates)
+            self._plan(pose, scan)
         elif self._there(pose):
             self.turns = 0
-            self._plan(pose, scan, mates)
+            self._plan(pose, scan)
         if self.facing is not None or self.progress is not Progress.DRIVING:
             return STANDSTILL
         return self.driver.drive(pose, scan)
@@ -90,9 +90,9 @@ class Stepwise:
         self.facing = wrap_angle(heading)
         self.driver.turning = 0
 
-    def _plan(self, pose: Pose, scan: Ranges, mates: Mates) -> None:
+    def _plan(self, pose: Pose, scan: Ranges) -> None:
         """One round of Algorithm 2 from where the robot stands, facing the fan's direction."""
-        view = View(self.fan, pose, scan, mates(), 0.1 * self.inflation)
+        view = View(self.fan, pose, scan, 0.1 * self.inflation)
         self.passage = passage_width(view, 8.0 * self.inflation)
         obstacle = classify(view, self.section.classify_range) if self.limited else Obstacle.NONE
         if obstacle is Obstacle.NONE and not self.turns:

@@ -28,7 +28,7 @@ class View:
     """One scan seen from one pose.
 
     sight: (n_beams,) float64 [m], free range along each beam, laser range where nothing returned.
-    obstacles: (n, 2) float64 [m], what the beams hit, team mates left out, and `beside`. Of hits closer
+    obstacles: (n, 2) float64 [m], what the beams hit, and `beside`. Of hits closer
     together than `grain` (a tenth of the inflation) some are left out: a clearance c is then wrong by at
     most grain^2 / (8 c).
     """
@@ -38,7 +38,6 @@ class View:
         fan: Fan,
         pose: Pose,
         scan: Ranges,
-        moving: frozenset[int],
         grain: float,
         beside: FloatArray = NO_POINTS,
     ) -> None:
@@ -48,16 +47,13 @@ class View:
         seen = np.isfinite(scan)
         self.sight: FloatArray = np.where(seen, scan, fan.range).astype(np.float64)
         self.open_beams: BoolArray = ~seen
-        solid = seen.copy()
-        if moving:
-            solid[sorted(moving)] = False
-        self.solid: BoolArray = solid
+        self.solid: BoolArray = seen
         c, s = elementary.cos(pose.heading), elementary.sin(pose.heading)
         d = fan.directions
         self.directions: FloatArray = np.column_stack(
             (c * d[:, 0] - s * d[:, 1], s * d[:, 0] + c * d[:, 1])
         )
-        hits = self.origin + self.directions[solid] * self.sight[solid, None]
+        hits = self.origin + self.directions[seen] * self.sight[seen, None]
         self.obstacles: FloatArray = np.concatenate((_outline(hits, grain), beside))
         self._shown_to = _shown_to(self.sight)
         have = squared_distances(self.origin[None], self.obstacles)[0]

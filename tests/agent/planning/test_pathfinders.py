@@ -11,7 +11,7 @@ from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import robot_briefing
 from onehop.contracts.sections import RobotSection
 from onehop.drive.solo import Solo, solo
-from robot_agent.core.planning import Progress, make_pathfinder, nobody
+from robot_agent.core.planning import Progress, make_pathfinder
 from robot_agent.core.planning.escape import Escape, Phase
 from tests.agent.planning.fields import CLOSED_ROOM, THREE_WALLS, alone, box, field, study_map
 from world_server.core.laser import Laser
@@ -54,7 +54,7 @@ def test_a_leader_inside_the_inflation_moves_out_and_never_further_in() -> None:
     laser, pose, room = Laser(walls, RobotSection()), np.array([[5.0, 0.35, 3.0]]), [0.35]
     for _ in range(200):
         scan = laser.scans(pose, np.zeros(1, dtype=np.int32))[0]
-        guidance = finder.step(Pose(*map(float, pose[0])), scan, nobody)
+        guidance = finder.step(Pose(*map(float, pose[0])), scan)
         pose[0] = moved(pose[0], guidance.twist)
         room.append(float(walls.clearance(pose[:, :2])[0]))
     assert min(room) > 0.33
@@ -77,23 +77,6 @@ def test_same_seed_same_path_and_another_seed_another() -> None:
     )
     assert first == again
     assert first != other
-
-
-def test_a_team_mate_ahead_is_waited_for_and_does_not_end_the_search() -> None:
-    """A mate that stands 1 m ahead on all beams within 20 degrees, for 10 s, then is gone."""
-    scenario, _ = alone(field(size=60.0), (30.0, 30.0, 0.0), (50.0, 30.0))
-    finder = make_pathfinder(robot_briefing(scenario, 1, 0), Pose(30.0, 30.0, 0.0), generator(1, "test"))
-    clear = np.full(181, np.inf, dtype=np.float32)
-    blocked = clear.copy()
-    mate = range(70, 111)
-    blocked[list(mate)] = 0.62
-    pose = Pose(30.0, 30.0, 0.0)
-    for _ in range(200):
-        guidance = finder.step(pose, blocked, lambda: frozenset(mate))
-        assert guidance.progress is Progress.DRIVING
-        assert guidance.twist.v == 0.0
-    driving = [finder.step(pose, clear, nobody).twist.v for _ in range(40)]
-    assert max(driving) == pytest.approx(1.0)
 
 
 @pytest.mark.slow
@@ -124,7 +107,7 @@ def test_distbug_alone_leaves_the_trap() -> None:
     laser, pose, phases = Laser(walls, RobotSection()), np.array([[20.0, 50.0, 0.0]]), set()
     for _ in range(6000):
         scan = laser.scans(pose, np.zeros(1, dtype=np.int32))[0]
-        guidance = finder.step(Pose(*map(float, pose[0])), scan, nobody)
+        guidance = finder.step(Pose(*map(float, pose[0])), scan)
         phases.add(finder.phase)
         if guidance.progress is not Progress.DRIVING:
             break
@@ -158,5 +141,5 @@ def test_memory_of_escape_is_fixed_when_it_is_made() -> None:
     scan = Laser(walls, RobotSection()).scans(
         np.array([[10.0, 20.0, 0.0]]), np.zeros(1, dtype=np.int32)
     )[0]
-    finder.step(Pose(10.0, 20.0, 0.0), scan, nobody)
+    finder.step(Pose(10.0, 20.0, 0.0), scan)
     assert finder.openings.nbytes == before < 150_000

@@ -34,7 +34,7 @@ def look(ground: MapSection, x: float, y: float, heading: float) -> View:
     scan = Laser(load_map(ground, {}), BODY).scans(
         np.array([(x, y, heading)]), np.zeros(1, dtype=np.int32)
     )
-    return View(FAN, Pose(x, y, heading), scan[0], frozenset(), 0.05)
+    return View(FAN, Pose(x, y, heading), scan[0], 0.05)
 
 
 def road_map(view: View, seed: int = 1, samples: int = 200) -> RoadMap:
@@ -71,7 +71,7 @@ def test_every_edge_keeps_the_inflation_from_all_that_can_be_seen(heading: float
     fine = replace(BODY, laser_beams=3601)
     pose = np.array([(10.0, 11.0, heading)])
     scan = Laser(load_map(BLOCKS, {}), fine).scans(pose, np.zeros(1, dtype=np.int32))[0]
-    seen = View(Fan(fine), roadmap.view.pose, scan, frozenset(), 1e-4).obstacles
+    seen = View(Fan(fine), roadmap.view.pose, scan, 1e-4).obstacles
     for share in np.linspace(0.0, 1.0, 9):
         points = edges[:, :2] + share * (edges[:, 2:] - edges[:, :2])
         assert squared_distances(points, seen).min() >= 0.5**2
@@ -118,7 +118,7 @@ def test_what_lies_behind_a_wall_is_not_visible() -> None:
 def test_who_stands_inside_the_inflation_may_move_out_but_not_further_in() -> None:
     view = look(field(box(12, 0, 13, 30), size=30.0), 11.7, 15.0, math.pi)
     wall = np.column_stack((np.full(60, 12.0), np.linspace(13.0, 17.0, 60)))
-    view = View(FAN, view.pose, np.full(181, np.inf, dtype=np.float32), frozenset(), 0.05, wall)
+    view = View(FAN, view.pose, np.full(181, np.inf, dtype=np.float32), 0.05, wall)
     here = np.array(((11.7, 15.0),))
     assert view.passable(here, np.array(((10.5, 15.0),)), 0.5)[0]
     assert not view.passable(here, np.array(((11.9, 15.4),)), 0.5)[0]
