@@ -123,7 +123,7 @@ class Driver:
             self.shielded = 0
             return twist
         self.shielded += 1
-        if nearest > self.clearance and abs(twist.w) > TURNS_AWAY:
+        if ahead and abs(twist.w) > TURNS_AWAY:
             return Twist(0.0, twist.w)
         return self._slide(float(self.fan.angles[int(np.argmin(scan))]), twist, ahead)
 

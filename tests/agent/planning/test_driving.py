@@ -64,7 +64,7 @@ def test_shield_drives_into_nothing_that_the_laser_sees(bearing: float) -> None:
 def test_a_way_that_turns_off_before_an_obstacle_is_turned_to() -> None:
     """Sliding along the obstacle would turn the other way, and back at the next tick."""
     on_way, scan = driver((0.0, 0.0), (0.3, 0.6)), CLEAR.copy()
-    scan[int(np.argmin(np.abs(FAN.angles - 0.35)))] = BODY.radius + 0.35
+    scan[int(np.argmin(np.abs(FAN.angles - 0.35)))] = BODY.radius + 0.2
     twist = on_way.drive(Pose(0.0, 0.0, 0.0), scan)
     assert twist.v == 0.0
     assert twist.w > 0.0
