@@ -43,7 +43,7 @@ def scene() -> tuple[View, RobotSection]:
 def local_plan(rounds: int) -> dict[str, float]:
     """CPU time of view, 200 samples, road map and A* [ms]."""
     view, body = scene()
-    scan = np.where(view.open_beams, np.inf, view.sight).astype(np.float32)
+    scan = np.where(view.solid, view.sight, np.inf).astype(np.float32)
     fan, random, took = Fan(body), generator(1, "bench"), []
     for _ in range(rounds):
         began = time.process_time()

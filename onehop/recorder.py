@@ -64,7 +64,7 @@ class _Recorder:
         self._bus.announce(topics.RECORDER)
         while self._end is None:
             what, data = self._bus.receive()
-            if data == GONE:
+            if what == topics.alive(topics.WORLD) and data == GONE:
                 break
             self._take(what, data)
         deadline = time.monotonic() + LAST_WORDS_S

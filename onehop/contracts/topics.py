@@ -62,15 +62,12 @@ RESTART = "restart"
 RESULT = "result"
 """Recorder to operator: summary of the finished log."""
 
-ALIVE = "alive"
-"""What a process tells itself when another one's liveliness token comes or goes."""
-
 PULSE = "pulse"
 """What a process tells itself to look at the clock."""
 
 
 def alive(name: str) -> str:
-    """Liveliness token of a process."""
+    """Liveliness token of a process, and what others tell themselves when it comes or goes."""
     return f"alive/{name}"
 
 

@@ -233,8 +233,8 @@ class Openings:
 
 def edge_samples(view: View, margin: float) -> FloatArray:
     """Points where outlines leave the laser's range, (n, 2) [m]: chance may miss them."""
-    beside = np.convolve(~view.open_beams, np.ones(13), mode="same") > 0
-    far = np.flatnonzero(view.open_beams & beside)
+    beside = np.convolve(view.solid, np.ones(13), mode="same") > 0
+    far = np.flatnonzero(~view.solid & beside)
     return view.origin + view.directions[far] * (view.fan.range - margin)
 
 
@@ -250,10 +250,10 @@ def unseen_rim(view: View, gap: float, goal: FloatArray, record: float) -> tuple
     sight = view.sight
     heading = view.fan.angles + view.pose.heading
     ends = view.origin + view.directions * sight[:, None]
-    beside = np.convolve(~view.open_beams, np.ones(13), mode="same") > 0
+    beside = np.convolve(view.solid, np.ones(13), mode="same") > 0
     closer = elementary.lengths(*(ends - goal).T) < record
     closer[1::4] = closer[2::4] = closer[3::4] = False
-    far = np.flatnonzero(view.open_beams & (beside | closer))
+    far = np.flatnonzero(~view.solid & (beside | closer))
     points = [ends[far]]
     outward = [heading[far]]
     for beam in np.flatnonzero(np.abs(np.diff(sight)) > gap).tolist():

@@ -46,7 +46,6 @@ class View:
         self.origin: FloatArray = np.array((pose.x, pose.y))
         seen = np.isfinite(scan)
         self.sight: FloatArray = np.where(seen, scan, fan.range).astype(np.float64)
-        self.open_beams: BoolArray = ~seen
         self.solid: BoolArray = seen
         c, s = elementary.cos(pose.heading), elementary.sin(pose.heading)
         d = fan.directions
