@@ -20,8 +20,8 @@ AROUND = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), 
 """Steps (column, row) to the eight neighbours, counter-clockwise."""
 
 
-CHORD = 4
-"""Steps along a wall that are measured, and looked around after, at once."""
+STEP = 2.0
+"""Of the robot between two looks, in cells."""
 
 LONGEST = 100000
 """Bound of every loop: far longer than any wall."""
@@ -61,26 +61,25 @@ def _straight(free: BoolArray, x0: float, y0: float, x1: float, y1: float) -> bo
 
 
 @numba.njit(cache=True)
-def _best_end(
-    sight: FloatArray, x: float, y: float, gx: float, gy: float, reach: float
-) -> tuple[int, float]:
-    """The ray whose end makes the way over it shortest (a node of the local tangent graph), and that
-    end's distance to the goal.
+def _best_node(
+    sight: FloatArray, x: float, y: float, gx: float, gy: float, reach: float, bound: float
+) -> int:
+    """The node of the local tangent graph over which the way to the goal is shortest, as its ray.
+
+    Nodes are the ends of rays beside a jump of the range and of those that nothing stops; they count if
+    they are closer to the goal than `bound`. -1: there is none, a local minimum.
     """
-    best, value, left = -1, np.inf, np.inf
+    best, value = -1, np.inf
     for ray in range(RAYS):
-        edge = sight[ray] >= reach - 0.5
-        for other in (ray - 1, ray + 1):
-            edge = (
-                edge or sight[other % RAYS] > sight[ray] + 3.0 or sight[ray] > sight[other % RAYS] + 3.0
-            )
-        if not edge or sight[ray] < 1.0:
+        here, before, after = sight[ray], sight[ray - 1], sight[(ray + 1) % RAYS]
+        edge = max(abs(here - before), abs(here - after)) > 3.0
+        if here < 1.0 or not (edge or here >= reach - 0.5):
             continue
         angle = 2 * math.pi * ray / RAYS
-        rest = math.hypot(x + sight[ray] * math.cos(angle) - gx, y + sight[ray] * math.sin(angle) - gy)
-        if sight[ray] + rest < value:
-            best, value, left = ray, sight[ray] + rest, rest
-    return best, left
+        left = math.hypot(x + here * math.cos(angle) - gx, y + here * math.sin(angle) - gy)
+        if left < bound and here + left < value:
+            best, value = ray, here + left
+    return best
 
 
 @numba.njit(cache=True)
@@ -117,70 +116,81 @@ def _follow(
     gy: float,
     reach: float,
     side: int,
-    least: float,
     around: IntArray,
 ) -> tuple[float, float, float]:
-    """From the wall ahead along it, until a place closer to the goal than ever is in sight, and there.
+    """Along the boundary that blocks the way to the goal, to a place closer to it than all of that.
 
-    Place and length; the length is infinite when the loop closes without. least: distance to beat.
-    Lengths are chords over CHORD steps, because steps to eight neighbours would make slanting walls
-    longer than they are.
+    The robot heads for the end of the boundary in sight, which cuts concave corners. Returns the place
+    and the length of the way; the length is infinite when the boundary closes without such a place.
     """
     direction = math.atan2(gy - y, gx - x)
-    c, s, length = math.cos(direction), math.sin(direction), 0.0
-    while free[round(y + 0.5 * s), round(x + 0.5 * c)]:
-        x, y, length = x + 0.5 * c, y + 0.5 * s, length + 0.5
-    column, row = round(x), round(y)
-    followed = min(least, math.hypot(column - gx, row - gy))
-    wall = math.atan2(round(y + 0.5 * s) - row, round(x + 0.5 * c) - column)
+    c, s, length, to_wall = math.cos(direction), math.sin(direction), 0.0, 0.0
+    while free[round(y + (to_wall + 0.5) * s), round(x + (to_wall + 0.5) * c)]:
+        to_wall += 0.5
+    column, row = round(x + to_wall * c), round(y + to_wall * s)
+    wall = math.atan2(
+        round(y + (to_wall + 0.5) * s) - row, round(x + (to_wall + 0.5) * c) - column
+    )
     heading = (round(wall / (math.pi / 4)) - 2 * side) % 8
+    followed = min(math.hypot(x - gx, y - gy), math.hypot(column - gx, row - gy))
     first_column, first_row, first_heading = column, row, -1
-    last_column, last_row = column, row
-    for moved in range(LONGEST):
-        heading = _next_heading(free, column, row, heading, side, around)
-        if column == first_column and row == first_row:
-            if heading == first_heading:
+    for _ in range(LONGEST):
+        for _ in range(LONGEST):
+            following = _next_heading(free, column, row, heading, side, around)
+            if column == first_column and row == first_row:
+                if following == first_heading:
+                    return x, y, np.inf
+                if first_heading < 0:
+                    first_heading = following
+            there_column, there_row = column + around[following, 0], row + around[following, 1]
+            if math.hypot(there_column - x, there_row - y) > reach or not _straight(
+                free, x, y, float(there_column), float(there_row)
+            ):
                 break
-            if first_heading < 0:
-                first_heading = heading
-        column, row = column + around[heading, 0], row + around[heading, 1]
-        followed = min(followed, math.hypot(column - gx, row - gy))
-        if moved % CHORD == CHORD - 1:
-            length += math.hypot(column - last_column, row - last_row)
-            last_column, last_row = column, row
-            sight = _look(free, float(column), float(row), reach)
-            left, ray = _nearest_seen(sight, float(column), float(row), gx, gy)
-            if left < followed - 1.0:
-                angle = 2 * math.pi * ray / RAYS
-                x, y = column + sight[ray] * math.cos(angle), row + sight[ray] * math.sin(angle)
-                return x, y, length + sight[ray]
-    return float(column), float(row), np.inf
+            column, row, heading = there_column, there_row, following
+            followed = min(followed, math.hypot(column - gx, row - gy))
+        rest = math.hypot(column - x, row - y)
+        if rest < 1e-9:
+            column, row, heading = there_column, there_row, following
+            followed = min(followed, math.hypot(column - gx, row - gy))
+            rest = math.hypot(column - x, row - y)
+        step = min(STEP, rest)
+        x, y, length = x + step / rest * (column - x), y + step / rest * (row - y), length + step
+        sight = _look(free, x, y, reach)
+        left, ray = _nearest_seen(sight, x, y, gx, gy)
+        if left < followed - 0.5:
+            angle = 2 * math.pi * ray / RAYS
+            return (
+                x + sight[ray] * math.cos(angle),
+                y + sight[ray] * math.sin(angle),
+                length + sight[ray],
+            )
+    return x, y, np.inf
 
 
 @numba.njit(cache=True)
 def _way(
     free: BoolArray, x: float, y: float, gx: float, gy: float, reach: float, around: IntArray
 ) -> float:
-    length, least = 0.0, math.hypot(x - gx, y - gy)
+    length, left_at = 0.0, np.inf
     for _ in range(LONGEST):
         if _straight(free, x, y, gx, gy):
             return length + math.hypot(x - gx, y - gy)
-        sight = _look(free, x, y, reach)
-        ray, left = _best_end(sight, x, y, gx, gy, reach)
-        angle = 2 * math.pi * ray / RAYS
-        if ray >= 0 and left < least - 0.5:
-            step = min(2.0, sight[ray])
-            x, y = x + step * math.cos(angle), y + step * math.sin(angle)
-            length += step
-            least = min(least, max(left, math.hypot(x - gx, y - gy)))
+        sight, here = _look(free, x, y, reach), math.hypot(x - gx, y - gy)
+        ray = _best_node(sight, x, y, gx, gy, reach, min(here, left_at) - 0.5)
+        if ray >= 0:
+            angle, step = 2 * math.pi * ray / RAYS, min(STEP, sight[ray])
+            x, y, length = x + step * math.cos(angle), y + step * math.sin(angle), length + step
             continue
+        ray = _best_node(sight, x, y, gx, gy, reach, np.inf)
+        angle = 2 * math.pi * ray / RAYS
         cross = math.cos(angle) * (gy - y) - math.sin(angle) * (gx - x)
         side = -1 if cross > 0 else 1
-        x, y, further = _follow(free, x, y, gx, gy, reach, side, least, around)
-        least = min(least, math.hypot(x - gx, y - gy))
+        x, y, further = _follow(free, x, y, gx, gy, reach, side, around)
         length += further
         if math.isinf(length):
             break
+        left_at = math.hypot(x - gx, y - gy)
     return -1.0
 
 

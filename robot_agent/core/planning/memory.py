@@ -69,6 +69,15 @@ class WayPoints:
         self.kind[number] = CLOSED
         self._closed += 1
         self._closed_as[number] = self._closed
+        self.detach(number)
+
+    def move(self, number: int, x: float, y: float) -> None:
+        """Put a way point elsewhere; its edges, which led to where it was, are forgotten."""
+        self.xy[number] = x, y
+        self.detach(number)
+
+    def detach(self, number: int) -> None:
+        """Forget the edges of a way point."""
         for peer in self._peer[number * DEGREE : (number + 1) * DEGREE]:
             if peer != NOTHING:
                 self.part(number, peer)

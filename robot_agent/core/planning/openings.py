@@ -18,8 +18,9 @@ from robot_agent.core.planning.roadmap import RoadMap
 from robot_agent.core.planning.view import BoolArray, View, squared_distances
 from robot_agent.core.scan import FloatArray
 
-Edge = tuple[FloatArray, FloatArray]
-"""Points at the edge of the unseen, (n, 2) [m], and the direction to the unseen side, (n,) [rad]."""
+Edge = tuple[FloatArray, FloatArray, FloatArray]
+"""Points at the edge of the unseen, (n, 2) [m], the direction to the unseen side, (n,) [rad], and the
+cost of the way from the robot, (n,) [m]."""
 
 MOST_MOVES = 8
 """Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
@@ -103,7 +104,7 @@ class Openings:
         candidates = np.flatnonzero(np.isfinite(costs) & beside)
         candidates = candidates[candidates > 0]
         outward = outward[near_rim.argmin(axis=1)] if len(rim) else np.zeros(len(roadmap.points))
-        self._refute(view, rim, known, (roadmap.points[candidates], outward[candidates]))
+        self._refute(view, rim, known, (roadmap.points[candidates], outward[candidates], costs[candidates]))
         candidates = candidates[self._worth(roadmap.points[candidates], record)]
         value = costs[candidates] + elementary.lengths(*(roadmap.points[candidates] - self.goal).T)
         offset = math.dist(view.origin, self.memory.xy[self.place])
@@ -185,7 +186,7 @@ class Openings:
 
     def _move_on(self, view: View, number: int, edge: Edge) -> bool:
         """The edge of the unseen recedes as the robot comes closer; its opening goes with it."""
-        points, outward = edge
+        points, outward, costs = edge
         if not len(points) or self.moves[number] >= MOST_MOVES:
             return False
         distance = elementary.lengths(*(points - self.memory.xy[number]).T)
@@ -193,8 +194,16 @@ class Openings:
         nearest = int(np.argmin(distance))
         if distance[nearest] > 1.5 * self.spacing:
             return False
+        others = self.memory.of_kind(OPENING)
+        others = others[others != number]
+        apart = squared_distances(points[nearest][None], self.memory.xy[others]).min(initial=np.inf)
+        if apart < self.spacing * self.spacing:
+            return False
         self.moves[number] += 1
-        self.memory.xy[number] = points[nearest]
+        x, y = points[nearest].tolist()
+        self.memory.move(number, x, y)
+        offset = math.dist(view.origin, self.memory.xy[self.place])
+        self.memory.join(self.place, number, float(costs[nearest]) + offset)
         self.gaze[number] = outward[nearest]
         return True
 
