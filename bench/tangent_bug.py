@@ -23,9 +23,6 @@ AROUND = np.array([(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), 
 STEP = 2.0
 """Of the robot between two looks, in cells."""
 
-LONGEST = 100000
-"""Bound of every loop: far longer than any wall."""
-
 
 @numba.njit(cache=True)
 def _look(free: BoolArray, x: float, y: float, reach: float) -> FloatArray:
@@ -121,7 +118,8 @@ def _follow(
     """Along the boundary that blocks the way to the goal, to a place closer to it than all of that.
 
     The robot heads for the end of the boundary in sight, which cuts concave corners. Returns the place
-    and the length of the way; the length is infinite when the boundary closes without such a place.
+    and the length of the way; the length is infinite when the boundary closes without such a place
+    (seen by a step that is met again; the steps to compare with are 1, 2, 4, ... of it).
     """
     direction = math.atan2(gy - y, gx - x)
     c, s, length, to_wall = math.cos(direction), math.sin(direction), 0.0, 0.0
@@ -133,27 +131,23 @@ def _follow(
     )
     heading = (round(wall / (math.pi / 4)) - 2 * side) % 8
     followed = min(math.hypot(x - gx, y - gy), math.hypot(column - gx, row - gy))
-    first_column, first_row, first_heading = column, row, -1
-    for _ in range(LONGEST):
-        for _ in range(LONGEST):
+    mark_column, mark_row, mark_heading, steps, marked = column, row, -1, 0, 1
+    while True:
+        while True:
             following = _next_heading(free, column, row, heading, side, around)
-            if column == first_column and row == first_row:
-                if following == first_heading:
-                    return x, y, np.inf
-                if first_heading < 0:
-                    first_heading = following
             there_column, there_row = column + around[following, 0], row + around[following, 1]
-            if math.hypot(there_column - x, there_row - y) > reach or not _straight(
+            shown = math.hypot(there_column - x, there_row - y) <= reach and _straight(
                 free, x, y, float(there_column), float(there_row)
-            ):
+            )
+            if not shown and math.hypot(column - x, row - y) > 1e-9:
                 break
-            column, row, heading = there_column, there_row, following
+            column, row, heading, steps = there_column, there_row, following, steps + 1
             followed = min(followed, math.hypot(column - gx, row - gy))
+            if column == mark_column and row == mark_row and heading == mark_heading:
+                return x, y, np.inf
+            if steps == 2 * marked:
+                mark_column, mark_row, mark_heading, marked = column, row, heading, steps
         rest = math.hypot(column - x, row - y)
-        if rest < 1e-9:
-            column, row, heading = there_column, there_row, following
-            followed = min(followed, math.hypot(column - gx, row - gy))
-            rest = math.hypot(column - x, row - y)
         step = min(STEP, rest)
         x, y, length = x + step / rest * (column - x), y + step / rest * (row - y), length + step
         sight = _look(free, x, y, reach)
@@ -165,7 +159,6 @@ def _follow(
                 y + sight[ray] * math.sin(angle),
                 length + sight[ray],
             )
-    return x, y, np.inf
 
 
 @numba.njit(cache=True)
@@ -173,7 +166,7 @@ def _way(
     free: BoolArray, x: float, y: float, gx: float, gy: float, reach: float, around: IntArray
 ) -> float:
     length, left_at = 0.0, np.inf
-    for _ in range(LONGEST):
+    while True:
         if _straight(free, x, y, gx, gy):
             return length + math.hypot(x - gx, y - gy)
         sight, here = _look(free, x, y, reach), math.hypot(x - gx, y - gy)
@@ -189,9 +182,8 @@ def _way(
         x, y, further = _follow(free, x, y, gx, gy, reach, side, around)
         length += further
         if math.isinf(length):
-            break
+            return -1.0
         left_at = math.hypot(x - gx, y - gy)
-    return -1.0
 
 
 def tangent_bug(free: BoolArray, x: float, y: float, gx: float, gy: float, reach: float) -> float:

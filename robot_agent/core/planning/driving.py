@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from onehop.contracts import elementary
-from onehop.contracts.geometry import Pose, Twist, wrap_angle
+from onehop.contracts.geometry import Pose, Twist, to_local, wrap_angle
 from onehop.contracts.messages import Ranges
 from onehop.contracts.sections import RobotSection
 from robot_agent.core.scan import Fan, FloatArray
@@ -23,13 +23,11 @@ TURN_IN_PLACE_ABOVE = 1.3
 """Bearing of the aim from which it only turns [rad]."""
 
 
-SLIDE = math.pi / 2 + 0.12
-"""Bearing that a too near obstacle gets while the robot slides past it [rad]."""
+SHORTEST = 8.0
+"""The aim comes closer, down to this part of the lookahead, while the straight way to it is not clear."""
 
-
-TURNS_AWAY = 0.3
-"""Turn rate from which a way leads past what is ahead [rad/s]: then turning suffices. Sliding along the
-nearest obstacle instead, a robot could swing to and fro between two for ever."""
+ALIGNED = 0.02
+"""Bearing of the aim from which turning does not help [rad]."""
 
 
 class Driver:
@@ -45,10 +43,7 @@ class Driver:
         self.leg = 0
         self.shielded = 0
         self.turning = 0
-        step = body.leader_speed * period
-        aside, ahead = body.radius + 0.05, 3.0 * body.radius + 2.0 * step
-        self._stop_ranges = _corridor(fan.angles, aside, ahead)
-        self._caution = max(clearance + 2.0 * step, math.hypot(aside, ahead))
+        self._caution = clearance + max(self.lookahead, 2.0 * body.leader_speed * period)
 
     def follow(self, way: FloatArray) -> None:
         """Take a new way, (n, 2) [m], map frame, from where the robot is."""
@@ -67,16 +62,21 @@ class Driver:
         """The twist for this tick on the way; standstill at its end."""
         if len(self.way) < 2:
             return Twist(0.0, 0.0)
-        x, y = self._aim(pose)
-        return self.shield(scan, self.towards(pose, x, y))
+        near = self._near(scan)
+        bearing, distance = self._clear_aim(pose, near)
+        twist = self.towards(bearing, distance)
+        if self._keeps(near, twist):
+            self.shielded = 0
+            return twist
+        if abs(bearing) < ALIGNED:
+            self.shielded += 1
+            return Twist(0.0, 0.0)
+        return self._turn(bearing)
 
-    def towards(self, pose: Pose, x: float, y: float) -> Twist:
-        """Twist that leads to a point nearby, by pure pursuit."""
-        dx, dy = x - pose.x, y - pose.y
-        distance = math.hypot(dx, dy)
+    def towards(self, bearing: float, distance: float) -> Twist:
+        """Twist that leads to a point nearby, as the robot sees it [rad, m], by pure pursuit."""
         if distance < 1e-6:
             return Twist(0.0, 0.0)
-        bearing = wrap_angle(elementary.atan2(dy, dx) - pose.heading)
         size = abs(bearing)
         if size > TURN_IN_PLACE_ABOVE or (self.turning and size > FULL_SPEED_BELOW):
             return self._turn(bearing)
@@ -104,40 +104,48 @@ class Driver:
         rate = min(self.body.max_turn_rate, abs(bearing) / self.period)
         return Twist(0.0, rate * self.turning)
 
-    def shield(self, scan: Ranges, twist: Twist) -> Twist:
-        """The same twist, unless it would hit something or enter an inflated obstacle."""
-        nearest = float(scan.min())
-        if twist.v <= 0.0:
-            return twist
-        if nearest > self._caution:
-            self.shielded = 0
-            return twist
+    def _near(self, scan: Ranges) -> FloatArray:
+        """Hits that matter to the next piece of the way, (n, 2) [m], as the robot sees them."""
         seen = np.flatnonzero(scan <= self._caution)
-        points = self.fan.directions[seen] * scan[seen, None]
+        return np.asarray(self.fan.directions[seen] * scan[seen, None].astype(np.float64))
+
+    def _clear_aim(self, pose: Pose, near: FloatArray) -> tuple[float, float]:
+        """Bearing [rad] and distance [m] of the furthest aim to which the straight way is clear.
+
+        A straight cut across a corner of the way may come closer to an obstacle than the way does; the
+        nearer the aim, the less is cut.
+        """
+        lookahead = self.lookahead
+        while True:
+            x, y = to_local(pose, *self._aim(pose, lookahead))
+            if lookahead <= self.lookahead / SHORTEST or self._clear(near, x, y):
+                return elementary.atan2(y, x), math.hypot(x, y)
+            lookahead *= 0.5
+
+    def _clear(self, near: FloatArray, x: float, y: float) -> bool:
+        """Does the straight way to a point keep the clearance, or what the robot has of it?"""
+        if not len(near):
+            return True
+        length2 = max(x * x + y * y, 1e-12)
+        share = np.clip((near[:, 0] * x + near[:, 1] * y) / length2, 0.0, 1.0)
+        dx, dy = near[:, 0] - share * x, near[:, 1] - share * y
+        return bool((dx * dx + dy * dy).min() >= self._least2(near))
+
+    def _keeps(self, near: FloatArray, twist: Twist) -> bool:
+        """Does the next step keep the clearance, or what the robot has of it?"""
+        if not len(near) or twist.v <= 0.0:
+            return True
         step, turn = twist.v * self.period, 0.5 * twist.w * self.period
-        next_room = elementary.lengths(
-            points[:, 0] - step * elementary.cos(turn), points[:, 1] - step * elementary.sin(turn)
-        )
-        ahead = bool((scan < self._stop_ranges).any())
-        if not ahead and next_room.min() >= min(self.clearance, nearest):
-            self.shielded = 0
-            return twist
-        self.shielded += 1
-        if ahead and abs(twist.w) > TURNS_AWAY:
-            return Twist(0.0, twist.w)
-        return self._slide(float(self.fan.angles[int(np.argmin(scan))]), twist, ahead)
+        dx = near[:, 0] - step * elementary.cos(turn)
+        dy = near[:, 1] - step * elementary.sin(turn)
+        return bool((dx * dx + dy * dy).min() >= self._least2(near))
 
-    def _slide(self, obstacle: float, twist: Twist, ahead: bool) -> Twist:
-        """Drive along what is too near, a little away from it: its bearing and a right angle more."""
-        side = math.copysign(1.0, twist.w - math.copysign(1e-9, obstacle))
-        bearing = min((obstacle + SLIDE, obstacle - SLIDE), key=lambda b: (abs(b - 0.2 * side), b))
-        if abs(bearing) > 0.1 or ahead:
-            rate = min(self.body.max_turn_rate, abs(bearing) / self.period)
-            return Twist(0.0, math.copysign(rate, bearing))
-        return Twist(0.5 * twist.v, bearing / self.period)
+    def _least2(self, near: FloatArray) -> float:
+        have2 = float((near[:, 0] ** 2 + near[:, 1] ** 2).min())
+        return min(self.clearance * self.clearance, have2 - 1e-9)
 
-    def _aim(self, pose: Pose) -> tuple[float, float]:
-        """The point of the way that lies a lookahead beyond the robot's foot point on it."""
+    def _aim(self, pose: Pose, lookahead: float) -> tuple[float, float]:
+        """The point of the way that lies `lookahead` beyond the robot's foot point on it."""
         x, y = pose.x, pose.y
         while True:
             (ax, ay), (bx, by) = self.way[self.leg], self.way[self.leg + 1]
@@ -147,20 +155,10 @@ class Driver:
             if along < length - 0.02 or self.leg == len(self.way) - 2:
                 break
             self.leg += 1
-        ahead = max(along, 0.0) + self.lookahead
+        ahead = max(along, 0.0) + lookahead
         for (ax, ay), (bx, by) in zip(self.way[self.leg :], self.way[self.leg + 1 :], strict=False):
             length = math.dist((ax, ay), (bx, by))
             if ahead <= length:
                 return ax + (bx - ax) * ahead / length, ay + (by - ay) * ahead / length
             ahead -= length
         return self.way[-1]
-
-
-def _corridor(angles: FloatArray, half_width: float, depth: float) -> FloatArray:
-    """Range at which each beam leaves a rectangle straight ahead, (n_beams,) [m]; 0 outside of +-90."""
-    with np.errstate(divide="ignore"):
-        ahead = np.where(
-            elementary.cosines(angles) > 0.05, depth / np.maximum(elementary.cosines(angles), 0.05), 0.0
-        )
-        aside = half_width / np.maximum(np.abs(elementary.sines(angles)), 1e-9)
-    return np.asarray(np.minimum(ahead, aside))

@@ -21,15 +21,28 @@ from robot_agent.core.planning.distbug import DistBug
 from robot_agent.core.planning.driving import Driver
 from robot_agent.core.planning.guidance import Guidance, Progress
 from robot_agent.core.planning.memory import NOTHING
-from robot_agent.core.planning.openings import Openings, edge_samples
+from robot_agent.core.planning.openings import Openings, corner_samples, edge_samples
 from robot_agent.core.planning.passage import passage_width
-from robot_agent.core.planning.roadmap import RoadMap, sample_fan
+from robot_agent.core.planning.roadmap import RoadMap, sample_fan, spread_draws
 from robot_agent.core.planning.survey import Survey
 from robot_agent.core.planning.view import NO_POINTS, Afterimage, View
 from robot_agent.core.scan import Fan, FloatArray
 
+EIGHTHS: FloatArray = np.arange(8) * math.pi / 4
+
 GOAL = -2
 """Stands for the goal where the number of a way point could stand."""
+
+GOAL_PLACES: FloatArray = np.concatenate(
+    [
+        np.zeros((1, 2)),
+        *(
+            share * np.column_stack((elementary.cosines(EIGHTHS), elementary.sines(EIGHTHS)))
+            for share in (0.5, 1.0)
+        ),
+    ]
+)
+"""Places around a goal, the goal first, in units of the greatest distance from it."""
 
 Reach = dict[int, tuple[int, float]]
 """Way point (or GOAL) -> point of the road map, and its cost [m]."""
@@ -106,11 +119,12 @@ class Escape:
         beside = self.afterimage.beside(pose, float(self.fan.angles[-1]))
         view = View(self.fan, pose, scan, 0.1 * self.inflation, beside)
         self.afterimage.keep(view)
-        draws = self.rng.random((self.section.samples, 2))
+        draws = spread_draws(self.section.samples, self.rng)
         samples = sample_fan(view, draws, pose.heading, math.pi, self.clearance)
-        samples = np.concatenate((samples, edge_samples(view, 1.1 * self.clearance)))
+        corners = corner_samples(view, 2.0 * self.inflation, 1.1 * self.comfort)
+        samples = np.concatenate((samples, edge_samples(view, 1.1 * self.clearance), corners))
         known = self.openings.in_view(view)
-        extras = np.concatenate((self.goal[None], self.openings.memory.xy[known]))
+        extras = np.concatenate((self._free_goal(view), self.openings.memory.xy[known]))
         roadmap = RoadMap(view, samples, extras, self.clearance, self.comfort)
         costs = roadmap.costs()
         reach = _reach(roadmap, costs, known)
@@ -121,6 +135,14 @@ class Escape:
         backtrack = self._choose(view, roadmap, costs, reach)
         way = np.array(self.driver.way) if self.turn is None else NO_POINTS
         self.survey = Survey(pose, samples, roadmap, way, backtrack)
+
+    def _free_goal(self, view: View) -> FloatArray:
+        """The goal, or a place in its tolerance that is free where the goal itself is not, (1, 2) [m]."""
+        if math.dist(view.origin, self.goal) > self.fan.range:
+            return self.goal[None]
+        places = self.goal + 0.5 * self.tolerance * GOAL_PLACES
+        good = np.flatnonzero(view.visible(places) & view.free(places, self.clearance)[0])
+        return places[good[0], None] if len(good) else self.goal[None]
 
     def _account(self, pose: Pose) -> None:
         """Keep the record; a new one gives the search its whole budget back."""

@@ -247,6 +247,22 @@ def edge_samples(view: View, margin: float) -> FloatArray:
     return view.origin + view.directions[far] * (view.fan.range - margin)
 
 
+def corner_samples(view: View, gap: float, room: float) -> FloatArray:
+    """Points beside what the robot sees pass before something farther off, (n, 2) [m].
+
+    A shortest way bends there and nowhere else, and chance draws none of them right there. gap: jump of
+    the range between two beams [m]; room: to leave to the near one's end [m].
+    """
+    jumps = np.diff(view.sight)
+    beam = np.flatnonzero(np.abs(jumps) > gap)
+    left = np.where(jumps[beam] > 0.0, 1.0, -1.0)
+    near = np.where(jumps[beam] > 0.0, beam, beam + 1)
+    ahead = view.directions[near]
+    aside = np.column_stack((-left * ahead[:, 1], left * ahead[:, 0]))
+    end = view.origin + ahead * view.sight[near, None]
+    return np.concatenate((end + room * aside, end + room * (aside + ahead)))
+
+
 def unseen_rim(view: View, gap: float, goal: FloatArray, record: float) -> tuple[FloatArray, FloatArray]:
     """Points where what is seen borders on the unseen, (n, 2) [m], and the direction to the unseen side.
 

@@ -22,8 +22,20 @@ NEIGHBOURS = 6
 DISCOMFORT = 2.0
 """A way that keeps only the clearance is taken if the comfortable one is more than this much longer."""
 
+R2: FloatArray = np.array((0.7548776662466927, 0.5698402909980532))
+"""1/g and 1/g^2 with g^3 = g + 1."""
+
 PROBES: FloatArray = np.arange(1, 8)[:, None] / 8.0
 """Where along an edge its visibility is probed."""
+
+
+def spread_draws(count: int, rng: np.random.Generator) -> FloatArray:
+    """Draws for `sample_fan`, (count, 2): an additive recurrence of low discrepancy, shifted at random.
+
+    Quasi-random points leave smaller holes than independent ones (Branicky, LaValle, Olson and Yang,
+    "Quasi-randomized path planning", ICRA 2001); the multiples are those of Roberts's R2 sequence.
+    """
+    return np.asarray((rng.random(2) + np.arange(count)[:, None] * R2) % 1.0)
 
 
 def sample_fan(view: View, draws: FloatArray, centre: float, half: float, margin: float) -> FloatArray:
