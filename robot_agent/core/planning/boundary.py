@@ -23,10 +23,10 @@ MOST_PIVOTS = 400
 """Bound of one trace; the laser's reach ends it long before."""
 
 
-def trace(view: View, start: FloatArray, radius: float, side: int) -> FloatArray:
+def trace(view: View, start: FloatArray, radius: float, side: int, length: float) -> FloatArray:
     """Centres of the rolling disc from `start` on, as far as they are known to be free, (n, 2) [m].
 
-    side: +1 has the obstacle on the left, -1 on the right. Empty if nothing is near enough to touch.
+    length: that is enough [m]. side: +1 has the obstacle on the left, -1 on the right. Empty if nothing is near enough to touch.
     """
     points = view.obstacles
     if not len(points):
@@ -36,7 +36,7 @@ def trace(view: View, start: FloatArray, radius: float, side: int) -> FloatArray
         return np.empty((0, 2))
     traced = [centre]
     angle = elementary.atan2(*(centre - points[contact])[::-1])
-    before = contact
+    before, rolled = contact, 0.0
     for _ in range(MOST_PIVOTS):
         turn, following = _pivot(points, contact, before, angle, radius, side)
         steps = max(1, math.ceil(turn / ARC_STEP))
@@ -44,7 +44,8 @@ def trace(view: View, start: FloatArray, radius: float, side: int) -> FloatArray
         traced += list(
             points[contact] + radius * np.column_stack((elementary.cosines(arc), elementary.sines(arc)))
         )
-        if following == contact or math.dist(traced[-1], view.origin) > view.fan.range:
+        rolled += radius * turn
+        if following == contact or rolled > length or math.dist(traced[-1], view.origin) > view.fan.range:
             break
         angle = elementary.atan2(*(traced[-1] - points[following])[::-1])
         before, contact = contact, following

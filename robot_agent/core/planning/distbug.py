@@ -26,6 +26,9 @@ from robot_agent.core.scan import FloatArray
 TURN_TO_LOOK = 0.8
 """Turn towards the boundary when nothing of it ahead is known [rad]."""
 
+AHEAD = 10.0
+"""Length of the boundary ahead that is looked for while it is followed, in radii."""
+
 MOST_LOOKS = 9
 """Turns in a row after which the whole circle was seen."""
 
@@ -106,7 +109,7 @@ class DistBug:
         contact = self._contact(view, towards)
         best: tuple[float, int, FloatArray] | None = None
         for side in (1, -1):
-            ahead = trace(view, contact, self.radius, side)
+            ahead = trace(view, contact, self.radius, side, view.fan.range)
             if len(ahead) > 1:
                 value = _length(ahead) + math.dist(ahead[-1], self.goal)
                 if best is None or value < best[0]:
@@ -144,7 +147,7 @@ class DistBug:
 
     def _follow(self, view: View, circuit: Circuit) -> FloatArray | None:
         """On along the boundary from the anchor; a turn towards it when nothing of it is known."""
-        ahead = trace(view, circuit.ahead[0], self.radius, circuit.side)
+        ahead = trace(view, circuit.ahead[0], self.radius, circuit.side, AHEAD * self.radius)
         if _length(ahead) < self.radius:
             self.looks += 1
             self.turn = view.pose.heading + circuit.side * TURN_TO_LOOK

@@ -141,6 +141,7 @@ class Driver:
         return bool((dx * dx + dy * dy).min() >= self._least2(near))
 
     def _least2(self, near: FloatArray) -> float:
+        """Least squared distance to keep from what is near [m2]: the clearance, or what there is of it."""
         have2 = float((near[:, 0] ** 2 + near[:, 1] ** 2).min())
         return min(self.clearance * self.clearance, have2 - 1e-9)
 

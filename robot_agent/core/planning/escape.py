@@ -44,6 +44,9 @@ GOAL_PLACES: FloatArray = np.concatenate(
 )
 """Places around a goal, the goal first, in units of the greatest distance from it."""
 
+MOST_BLOCKED = 3
+"""Planning moments without a move after which the robot makes room for itself first."""
+
 Reach = dict[int, tuple[int, float]]
 """Way point (or GOAL) -> point of the road map, and its cost [m]."""
 
@@ -74,7 +77,7 @@ class Escape:
         self.distbug = DistBug(self.goal, self.clearance)
         self.budget = self.section.patience * self.body.laser_range
         self.spent = 0.0
-        self.target, self.tries = NOTHING, 0
+        self.target, self.tries, self.blocked = NOTHING, 0, 0
         self.turn: float | None = None
         self.planned: Pose | None = None
         self.remaining = self.record = math.dist((pose.x, pose.y), self.goal)
@@ -132,7 +135,11 @@ class Escape:
         self.openings.note_place(pose, lengths, self.body.laser_range)
         self.openings.note(view, roadmap, costs, known, self.record)
         self.passage = passage_width(view, 8.0 * self.inflation)
-        backtrack = self._choose(view, roadmap, costs, reach)
+        backtrack = False
+        if self.blocked >= MOST_BLOCKED:
+            self._make_room(view)
+        else:
+            backtrack = self._choose(view, roadmap, costs, reach)
         way = np.array(self.driver.way) if self.turn is None else NO_POINTS
         self.survey = Survey(pose, samples, roadmap, way, backtrack)
 
@@ -146,8 +153,12 @@ class Escape:
 
     def _account(self, pose: Pose) -> None:
         """Keep the record; a new one gives the search its whole budget back."""
+        moved = math.inf
         if self.planned is not None:
-            self.spent += math.dist((pose.x, pose.y), (self.planned.x, self.planned.y))
+            moved = math.dist((pose.x, pose.y), (self.planned.x, self.planned.y))
+            self.spent += max(moved, 0.2 * self.inflation)
+        still = self.driver.shielded > 0 and moved < 0.2 * self.inflation
+        self.blocked = self.blocked + 1 if still else 0
         self.planned = pose
         self.driver.shielded = 0
         self.record = min(self.record, math.dist((pose.x, pose.y), self.goal))
@@ -229,6 +240,16 @@ class Escape:
             self.openings.memory.close(ahead[0])
         else:
             self.openings.memory.part(ahead[-1], ahead[-2])
+
+    def _make_room(self, view: View) -> None:
+        """Drive where there is most room: what was planned cannot be driven from here, again and again."""
+        bearing = EIGHTHS + view.pose.heading
+        step = np.column_stack((elementary.cosines(bearing), elementary.sines(bearing)))
+        ends = view.origin + self.inflation * step
+        room = view.free(ends, self.clearance)[1]
+        clear = view.passable(np.broadcast_to(view.origin, ends.shape), ends, self.clearance)
+        best = ends[int(np.argmax(np.where(clear, room, -1.0)))]
+        self._take(np.array((view.origin, best)), self.remaining)
 
     def _circle(self, view: View, roadmap: RoadMap, costs: FloatArray) -> None:
         way = self.distbug.way(view, roadmap, costs)

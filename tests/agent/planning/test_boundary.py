@@ -52,7 +52,7 @@ def test_disc_passes_a_gap_only_if_it_fits(gap: float, passes: bool) -> None:
     s = np.arange(0.0, 4.0, 0.05)
     walls = np.concatenate((np.column_stack((s, 0 * s)), np.column_stack((4.0 + gap + s, 0 * s))))
     view = View(FAN, Pose(2.0, -2.0, 0.0), NOTHING_SEEN, 0.05, walls)
-    traced = trace(view, np.array((2.0, -0.5)), 0.5, 1)
+    traced = trace(view, np.array((2.0, -0.5)), 0.5, 1, 10.0)
     assert (traced[:, 0].max() > 6.0) is not passes
 
 
@@ -61,5 +61,5 @@ def test_trace_stops_where_nothing_is_known() -> None:
     s = np.arange(-9.0, 9.0, 0.05)
     wall = np.column_stack((s, 0 * s))
     view = View(FAN, Pose(0.0, -0.5, 0.0), NOTHING_SEEN, 0.05, wall)
-    assert trace(view, np.array((0.0, -0.5)), 0.5, 1)[:, 0].max() > 8.0
-    assert trace(view, np.array((0.0, -0.5)), 0.5, -1)[:, 0].min() > -1.2
+    assert trace(view, np.array((0.0, -0.5)), 0.5, 1, 10.0)[:, 0].max() > 8.0
+    assert trace(view, np.array((0.0, -0.5)), 0.5, -1, 10.0)[:, 0].min() > -1.2
