@@ -23,6 +23,8 @@ TURN_IN_PLACE_ABOVE = 1.3
 """Bearing of the aim from which it only turns [rad]."""
 
 
+Point = tuple[float, float]
+
 SHORTEST = 8.0
 """The aim comes closer, down to this part of the lookahead, while the straight way to it is not clear."""
 
@@ -31,7 +33,12 @@ ALIGNED = 0.02
 
 
 class Driver:
-    """Follows one way after the other. period: of a tick [s]. clearance: to keep from obstacles [m]."""
+    """Follows one way after the other. period: of a tick [s]. clearance: to keep from obstacles [m].
+
+    A step that would not keep it is not taken. The robot turns to its aim instead, and to the same aim
+    until it can go on: another look from another heading may suggest another one, and back again.
+    shielded: ticks in a row in which it faced the aim and still could not go on.
+    """
 
     def __init__(self, body: RobotSection, fan: Fan, period: float, clearance: float) -> None:
         self.body = body
@@ -39,10 +46,11 @@ class Driver:
         self.period = period
         self.clearance = clearance
         self.lookahead = max(0.4 * body.leader_speed, body.leader_speed / body.max_turn_rate)
-        self.way: list[tuple[float, float]] = []
+        self.way: list[Point] = []
         self.leg = 0
         self.shielded = 0
         self.turning = 0
+        self._held: Point | None = None
         self._caution = clearance + max(self.lookahead, 2.0 * body.leader_speed * period)
 
     def follow(self, way: FloatArray) -> None:
@@ -50,6 +58,7 @@ class Driver:
         self.way = [(float(x), float(y)) for x, y in way]
         self.leg = 0
         self.turning = 0
+        self._held = None
 
     def left(self, pose: Pose) -> float:
         """Length of the way still to drive [m]."""
@@ -63,11 +72,14 @@ class Driver:
         if len(self.way) < 2:
             return Twist(0.0, 0.0)
         near = self._near(scan)
-        bearing, distance = self._clear_aim(pose, near)
-        twist = self.towards(bearing, distance)
+        aim = self._held or self._clear_aim(pose, near)
+        x, y = to_local(pose, *aim)
+        bearing = elementary.atan2(y, x)
+        twist = self.towards(bearing, math.hypot(x, y))
         if self._keeps(near, twist):
-            self.shielded = 0
+            self.shielded, self._held = 0, None
             return twist
+        self._held = aim
         if abs(bearing) < ALIGNED:
             self.shielded += 1
             return Twist(0.0, 0.0)
@@ -109,17 +121,17 @@ class Driver:
         seen = np.flatnonzero(scan <= self._caution)
         return np.asarray(self.fan.directions[seen] * scan[seen, None].astype(np.float64))
 
-    def _clear_aim(self, pose: Pose, near: FloatArray) -> tuple[float, float]:
-        """Bearing [rad] and distance [m] of the furthest aim to which the straight way is clear.
+    def _clear_aim(self, pose: Pose, near: FloatArray) -> Point:
+        """The furthest aim to which the straight way is clear.
 
         A straight cut across a corner of the way may come closer to an obstacle than the way does; the
         nearer the aim, the less is cut.
         """
         lookahead = self.lookahead
         while True:
-            x, y = to_local(pose, *self._aim(pose, lookahead))
-            if lookahead <= self.lookahead / SHORTEST or self._clear(near, x, y):
-                return elementary.atan2(y, x), math.hypot(x, y)
+            aim = self._aim(pose, lookahead)
+            if lookahead <= self.lookahead / SHORTEST or self._clear(near, *to_local(pose, *aim)):
+                return aim
             lookahead *= 0.5
 
     def _clear(self, near: FloatArray, x: float, y: float) -> bool:
@@ -145,7 +157,7 @@ class Driver:
         have2 = float((near[:, 0] ** 2 + near[:, 1] ** 2).min())
         return min(self.clearance * self.clearance, have2 - 1e-9)
 
-    def _aim(self, pose: Pose, lookahead: float) -> tuple[float, float]:
+    def _aim(self, pose: Pose, lookahead: float) -> Point:
         """The point of the way that lies `lookahead` beyond the robot's foot point on it."""
         x, y = pose.x, pose.y
         while True:

@@ -21,7 +21,7 @@ from robot_agent.core.planning.distbug import DistBug
 from robot_agent.core.planning.driving import Driver
 from robot_agent.core.planning.guidance import Guidance, Progress
 from robot_agent.core.planning.memory import NOTHING
-from robot_agent.core.planning.openings import Openings, corner_samples, edge_samples
+from robot_agent.core.planning.openings import Openings, corner_samples, edge_samples, goal_sample
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan, spread_draws
 from robot_agent.core.planning.survey import Survey
@@ -125,7 +125,9 @@ class Escape:
         draws = spread_draws(self.section.samples, self.rng)
         samples = sample_fan(view, draws, pose.heading, math.pi, self.clearance)
         corners = corner_samples(view, 2.0 * self.inflation, 1.1 * self.comfort)
-        samples = np.concatenate((samples, edge_samples(view, 1.1 * self.clearance), corners))
+        ahead = goal_sample(view, self.goal, 1.1 * self.clearance)
+        edges = edge_samples(view, 1.1 * self.clearance)
+        samples = np.concatenate((samples, edges, corners, ahead))
         known = self.openings.in_view(view)
         extras = np.concatenate((self._free_goal(view), self.openings.memory.xy[known]))
         roadmap = RoadMap(view, samples, extras, self.clearance, self.comfort)

@@ -15,7 +15,7 @@ from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, wrap_angle
 from robot_agent.core.planning.memory import CLOSED, NOTHING, OPENING, PLACE, WayPoints
 from robot_agent.core.planning.roadmap import RoadMap
-from robot_agent.core.planning.view import BoolArray, View, squared_distances
+from robot_agent.core.planning.view import NO_POINTS, BoolArray, View, squared_distances
 from robot_agent.core.scan import FloatArray
 
 Edge = tuple[FloatArray, FloatArray, FloatArray]
@@ -105,11 +105,15 @@ class Openings:
         candidates = candidates[candidates > 0]
         outward = outward[near_rim.argmin(axis=1)] if len(rim) else np.zeros(len(roadmap.points))
         self._refute(view, rim, known, (roadmap.points[candidates], outward[candidates], costs[candidates]))
-        candidates = candidates[self._worth(roadmap.points[candidates], record)]
-        value = costs[candidates] + elementary.lengths(*(roadmap.points[candidates] - self.goal).T)
         offset = math.dist(view.origin, self.memory.xy[self.place])
+        value = costs + elementary.lengths(*(roadmap.points - self.goal).T)
+        closer = candidates[self._closer(roadmap.points[candidates], record)]
+        if len(closer):
+            best = int(closer[np.argmin(value[closer])])
+            self._draw_on(roadmap.points[best], float(outward[best]), float(costs[best]) + offset)
+        candidates = candidates[self._worth(roadmap.points[candidates], record)]
         decided: list[int] = []
-        for point in candidates[np.argsort(value, kind="stable")].tolist():
+        for point in candidates[np.argsort(value[candidates], kind="stable")].tolist():
             here = roadmap.points[point]
             if not self.memory.has_room:
                 break
@@ -121,6 +125,24 @@ class Openings:
                 self.gaze[number] = outward[point]
                 self.moves[number] = 0
                 self.memory.join(self.place, number, float(costs[point]) + offset)
+
+    def _draw_on(self, point: FloatArray, outward: float, cost: float) -> None:
+        """The best place ahead takes the place of a nearby opening that is farther from the goal.
+
+        Otherwise openings that were there first would draw the robot to and fro across the open.
+        """
+        number, distance = self.memory.nearest(float(point[0]), float(point[1]), OPENING)
+        if distance >= self.spacing:
+            return
+        x, y = self.memory.xy[number].tolist()
+        if math.dist((x, y), self.goal) > math.dist(point, self.goal):
+            self._move(number, point, outward, cost)
+
+    def _move(self, number: int, point: FloatArray, outward: float, cost: float) -> None:
+        """Put an opening elsewhere; cost: of the way there from the present place [m]."""
+        self.memory.move(number, float(point[0]), float(point[1]))
+        self.memory.join(self.place, number, cost)
+        self.gaze[number] = outward
 
     def _worth(self, points: FloatArray, record: float) -> BoolArray:
         """Which (n, 2) points are worth a new opening.
@@ -200,11 +222,8 @@ class Openings:
         if apart < self.spacing * self.spacing:
             return False
         self.moves[number] += 1
-        x, y = points[nearest].tolist()
-        self.memory.move(number, x, y)
         offset = math.dist(view.origin, self.memory.xy[self.place])
-        self.memory.join(self.place, number, float(costs[nearest]) + offset)
-        self.gaze[number] = outward[nearest]
+        self._move(number, points[nearest], float(outward[nearest]), float(costs[nearest]) + offset)
         return True
 
     def best(self, seeds: dict[int, float], kept: int) -> Route:
@@ -245,6 +264,17 @@ def edge_samples(view: View, margin: float) -> FloatArray:
     beside = np.convolve(view.solid, np.ones(13), mode="same") > 0
     far = np.flatnonzero(~view.solid & beside)
     return view.origin + view.directions[far] * (view.fan.range - margin)
+
+
+def goal_sample(view: View, goal: FloatArray, margin: float) -> FloatArray:
+    """The furthest point in sight straight towards the goal, (1, 2) [m], or none when it is out of view."""
+    bearing, distance = view.polar(goal[None])
+    if abs(bearing[0]) >= view.fan.angles[-1]:
+        return NO_POINTS
+    spacing = view.fan.angles[1] - view.fan.angles[0]
+    reach = view.sight[round(float((bearing[0] - view.fan.angles[0]) / spacing))] - margin
+    share = max(float(reach), 0.0) / max(float(distance[0]), 1e-9)
+    return (view.origin + (goal - view.origin) * share)[None]
 
 
 def corner_samples(view: View, gap: float, room: float) -> FloatArray:
