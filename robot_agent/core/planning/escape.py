@@ -44,6 +44,10 @@ GOAL_PLACES: FloatArray = np.concatenate(
 )
 """Places around a goal, the goal first, in units of the greatest distance from it."""
 
+WALLS_GO_ON = 0.5
+"""Way that an opening with a wall between it and the goal is taken to cost more, in laser ranges: a wall
+that leaves the view is likelier to go on than to end right there."""
+
 MOST_BLOCKED = 3
 """Planning moments without a move after which the robot makes room for itself first."""
 
@@ -71,7 +75,9 @@ class Escape:
         self.inflation = self.section.inflation
         self.clearance, self.comfort = 1.04 * self.inflation, 1.4 * self.inflation
         self.driver = Driver(self.body, self.fan, briefing.period_ns * 1e-9, 1.01 * self.inflation)
-        self.openings = Openings(self.section.memory, self.goal, self.inflation)
+        self.openings = Openings(
+            self.section.memory, self.goal, self.inflation, WALLS_GO_ON * self.body.laser_range
+        )
         self.afterimage = Afterimage(6.0 * self.inflation)
         self.phase = Phase.SEARCH
         self.distbug = DistBug(self.goal, self.clearance)

@@ -3,7 +3,8 @@
 An opening is a place of a road map beside something that the laser did not see. It is remembered until
 it turns out to lead nowhere new. Under the freespace assumption (Koenig, Tovey and Smirnov,
 "Performance bounds for planning in unknown terrain", Artificial Intelligence 147, 2003) the best one
-has the least sum of the known way to it and the straight distance from it to the goal.
+has the least sum of the known way to it and the straight distance from it to the goal. One with a wall
+right before it towards the goal counts as farther, by `wall`.
 """
 
 import math
@@ -24,6 +25,10 @@ cost of the way from the robot, (n,) [m]."""
 
 MOST_MOVES = 8
 """Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
+
+
+LOOK_BEYOND = 3.0
+"""Length of the straight way from an opening to the goal that is looked along, in spacings."""
 
 
 class Route(NamedTuple):
@@ -47,12 +52,14 @@ class Route(NamedTuple):
 class Openings:
     """Way points and the rules that make, close and choose openings. Lengths follow the inflation."""
 
-    def __init__(self, capacity: int, goal: FloatArray, inflation: float) -> None:
+    def __init__(self, capacity: int, goal: FloatArray, inflation: float, wall: float) -> None:
         self.memory = WayPoints(capacity)
         self.gaze: FloatArray = np.zeros(capacity)
         self.moves = np.zeros(capacity, dtype=np.uint8)
+        self.walled = np.zeros(capacity, dtype=np.bool_)
         self.goal = goal
         self.inflation = inflation
+        self.wall = wall
         self.spacing = 4.0 * inflation
         self.rim = 3.0 * inflation
         self.place = NOTHING
@@ -60,7 +67,7 @@ class Openings:
     @property
     def nbytes(self) -> int:
         """Bytes of the memory, full or empty."""
-        return self.memory.nbytes + int(self.gaze.nbytes + self.moves.nbytes)
+        return self.memory.nbytes + int(self.gaze.nbytes + self.moves.nbytes + self.walled.nbytes)
 
     def in_view(self, view: View) -> list[int]:
         """Places and openings in view, ascending."""
@@ -125,6 +132,19 @@ class Openings:
                 self.gaze[number] = outward[point]
                 self.moves[number] = 0
                 self.memory.join(self.place, number, float(costs[point]) + offset)
+        self._look_beyond(view)
+
+    def _look_beyond(self, view: View) -> None:
+        """Note which openings in view have a wall right before them towards the goal."""
+        openings = self.memory.of_kind(OPENING)
+        points = self.memory.xy[openings]
+        shown = view.visible(points)
+        openings, points = openings[shown], points[shown]
+        offset = self.goal - points
+        distance = elementary.lengths(offset[:, 0], offset[:, 1])
+        share = np.minimum(1.0, LOOK_BEYOND * self.spacing / np.maximum(distance, 1e-9))
+        clear = view.passable(points, points + offset * share[:, None], self.inflation)
+        self.walled[openings] = ~clear
 
     def _draw_on(self, point: FloatArray, outward: float, cost: float) -> None:
         """The best place ahead takes the place of a nearby opening that is farther from the goal.
@@ -240,6 +260,8 @@ class Openings:
                 break
             if memory.kind[number] == OPENING:
                 estimate = cost + math.dist(memory.xy[number], self.goal)
+                if self.walled[number]:
+                    estimate += self.wall
                 if (estimate, number) < (value, best):
                     best, value, best_cost = number, estimate, cost
                 if number == kept:
