@@ -126,9 +126,7 @@ def _follow(
     while free[round(y + (to_wall + 0.5) * s), round(x + (to_wall + 0.5) * c)]:
         to_wall += 0.5
     column, row = round(x + to_wall * c), round(y + to_wall * s)
-    wall = math.atan2(
-        round(y + (to_wall + 0.5) * s) - row, round(x + (to_wall + 0.5) * c) - column
-    )
+    wall = math.atan2(round(y + (to_wall + 0.5) * s) - row, round(x + (to_wall + 0.5) * c) - column)
     heading = (round(wall / (math.pi / 4)) - 2 * side) % 8
     followed = min(math.hypot(x - gx, y - gy), math.hypot(column - gx, row - gy))
     mark_column, mark_row, mark_heading, steps, marked = column, row, -1, 0, 1

@@ -99,6 +99,7 @@ def drive(scenario: Scenario, walls: WallMap, known: KnownMap, cells: tuple[int,
         "goal": goal,
         "answer": run.progress.value,
         "length_m": round(run.length, 3),
+        "rest_m": round(math.dist(run.path[-1][:2], goal), 3),
         "clearance_m": round(run.min_clearance, 4),
         "contacts": run.contacts,
         "tangent_bug_m": round(bug * known.cell, 3) if bug > 0 else None,
@@ -127,11 +128,10 @@ def campaign(path: Path, count: int, lines: Path) -> Line:
 def summary(lines: list[Line], scenario: Scenario) -> Line:
     """One map's figures. Ratios are those of pairs that the planner in question solved.
 
-    The leader stops within the goal's tolerance, so its way is compared with the shortest less that.
+    The leader stops within the goal's tolerance; what is left to the goal counts as driven.
     """
-    tolerance = scenario.goal.tolerance
     solved = [line for line in lines if line["answer"] == "arrived"]
-    escape = [line["length_m"] / (line["shortest_m"] - tolerance) for line in solved]
+    escape = [(line["length_m"] + line["rest_m"]) / line["shortest_m"] for line in solved]
     tangent = [line["tangent_bug_m"] / line["shortest_m"] for line in lines if line["tangent_bug_m"]]
     return {
         "map": lines[0]["map"],

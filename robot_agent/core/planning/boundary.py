@@ -26,7 +26,8 @@ MOST_PIVOTS = 400
 def trace(view: View, start: FloatArray, radius: float, side: int, length: float) -> FloatArray:
     """Centres of the rolling disc from `start` on, as far as they are known to be free, (n, 2) [m].
 
-    length: that is enough [m]. side: +1 has the obstacle on the left, -1 on the right. Empty if nothing is near enough to touch.
+    length: that is enough [m]. side: +1 has the obstacle on the left, -1 on the right. Empty if nothing
+    is near enough to touch.
     """
     points = view.obstacles
     if not len(points):
@@ -45,7 +46,11 @@ def trace(view: View, start: FloatArray, radius: float, side: int, length: float
             points[contact] + radius * np.column_stack((elementary.cosines(arc), elementary.sines(arc)))
         )
         rolled += radius * turn
-        if following == contact or rolled > length or math.dist(traced[-1], view.origin) > view.fan.range:
+        if (
+            following == contact
+            or rolled > length
+            or math.dist(traced[-1], view.origin) > view.fan.range
+        ):
             break
         angle = elementary.atan2(*(traced[-1] - points[following])[::-1])
         before, contact = contact, following

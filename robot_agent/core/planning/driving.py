@@ -22,11 +22,10 @@ FULL_SPEED_BELOW = 0.6
 TURN_IN_PLACE_ABOVE = 1.3
 """Bearing of the aim from which it only turns [rad]."""
 
-
 Point = tuple[float, float]
 
 SHORTEST = 8.0
-"""The aim comes closer, down to this part of the lookahead, while the straight way to it is not clear."""
+"""The aim comes closer, down to this part of the lookahead, while the way to it is not clear."""
 
 ALIGNED = 0.02
 """Bearing of the aim from which turning does not help [rad]."""
@@ -153,7 +152,7 @@ class Driver:
         return bool((dx * dx + dy * dy).min() >= self._least2(near))
 
     def _least2(self, near: FloatArray) -> float:
-        """Least squared distance to keep from what is near [m2]: the clearance, or what there is of it."""
+        """Least squared distance to keep [m2]: the clearance, or what there is of it."""
         have2 = float((near[:, 0] ** 2 + near[:, 1] ** 2).min())
         return min(self.clearance * self.clearance, have2 - 1e-9)
 

@@ -141,7 +141,8 @@ class Escape:
         reach = _reach(roadmap, costs, known)
         lengths = {n: cost for n, (_, cost) in reach.items() if n != GOAL}
         self.openings.note_place(pose, lengths, self.body.laser_range)
-        self.openings.note(view, roadmap, costs, known, self.record)
+        noted = self.openings.note(view, roadmap, costs, known, self.record)
+        reach |= {number: (point, float(costs[point])) for number, point in noted.items()}
         self.passage = passage_width(view, 8.0 * self.inflation)
         backtrack = False
         if self.blocked >= MOST_BLOCKED:
@@ -152,7 +153,7 @@ class Escape:
         self.survey = Survey(pose, samples, roadmap, way, backtrack)
 
     def _free_goal(self, view: View) -> FloatArray:
-        """The goal, or a place in its tolerance that is free where the goal itself is not, (1, 2) [m]."""
+        """The goal, or a free place in its tolerance where the goal itself is not free, (1, 2) [m]."""
         if math.dist(view.origin, self.goal) > self.fan.range:
             return self.goal[None]
         places = self.goal + 0.5 * self.tolerance * GOAL_PLACES
@@ -250,7 +251,7 @@ class Escape:
             self.openings.memory.part(ahead[-1], ahead[-2])
 
     def _make_room(self, view: View) -> None:
-        """Drive where there is most room: what was planned cannot be driven from here, again and again."""
+        """Drive where there is most room: from here, what was planned cannot be driven."""
         bearing = EIGHTHS + view.pose.heading
         step = np.column_stack((elementary.cosines(bearing), elementary.sines(bearing)))
         ends = view.origin + self.inflation * step

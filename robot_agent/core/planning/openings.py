@@ -3,8 +3,8 @@
 An opening is a place of a road map beside something that the laser did not see. It is remembered until
 it turns out to lead nowhere new. Under the freespace assumption (Koenig, Tovey and Smirnov,
 "Performance bounds for planning in unknown terrain", Artificial Intelligence 147, 2003) the best one
-has the least sum of the known way to it and the straight distance from it to the goal. One with a wall
-right before it towards the goal counts as farther, by `wall`.
+has the least sum of the known way to it and the straight distance from it to the goal. That distance
+weighs more (EAGERNESS), and one with a wall right before it towards the goal counts as farther.
 """
 
 import math
@@ -14,18 +14,33 @@ import numpy as np
 
 from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, wrap_angle
-from robot_agent.core.planning.memory import CLOSED, NOTHING, OPENING, PLACE, WayPoints
+from robot_agent.core.planning.memory import CLOSED, NOTHING, OPENING, PLACE, Indices, WayPoints
 from robot_agent.core.planning.roadmap import RoadMap
 from robot_agent.core.planning.view import NO_POINTS, BoolArray, View, squared_distances
 from robot_agent.core.scan import FloatArray
 
-Edge = tuple[FloatArray, FloatArray, FloatArray]
-"""Points at the edge of the unseen, (n, 2) [m], the direction to the unseen side, (n,) [rad], and the
-cost of the way from the robot, (n,) [m]."""
+
+class Edge(NamedTuple):
+    """The points of a road map that lie beside something unseen: `beside`, ascending.
+
+    Of all points of the road map: costs, of the way there [m]; outward, direction to the unseen [rad].
+    offset: from the robot to the present place [m].
+    """
+
+    roadmap: RoadMap
+    costs: FloatArray
+    outward: FloatArray
+    beside: Indices
+    offset: float
+
 
 MOST_MOVES = 8
 """Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
 
+
+EAGERNESS = 1.3
+"""Weight of the straight distance to the goal against the way to an opening. At 1 a robot that went past
+a door goes on along the wall for ever: every step away from the door makes it dearer by as much."""
 
 LOOK_BEYOND = 3.0
 """Length of the straight way from an opening to the goal that is looked along, in spacings."""
@@ -63,6 +78,7 @@ class Openings:
         self.spacing = 4.0 * inflation
         self.rim = 3.0 * inflation
         self.place = NOTHING
+        self.noted: dict[int, int] = {}
 
     @property
     def nbytes(self) -> int:
@@ -100,39 +116,49 @@ class Openings:
 
     def note(
         self, view: View, roadmap: RoadMap, costs: FloatArray, known: list[int], record: float
-    ) -> None:
+    ) -> dict[int, int]:
         """Close the openings that are in full view or move them on, and remember the new ones.
 
-        record: least distance to the goal that the robot ever had [m].
+        record: least distance to the goal that the robot ever had [m]. Returns the openings that are now
+        at a point of the road map where they were not before, and that point.
         """
         rim, outward = unseen_rim(view, 2.0 * self.inflation, self.goal, record)
         near_rim = squared_distances(roadmap.points, rim)
         beside = near_rim.min(axis=1, initial=np.inf) < self.rim * self.rim
-        candidates = np.flatnonzero(np.isfinite(costs) & beside)
-        candidates = candidates[candidates > 0]
+        beside[0] = False
         outward = outward[near_rim.argmin(axis=1)] if len(rim) else np.zeros(len(roadmap.points))
-        self._refute(view, rim, known, (roadmap.points[candidates], outward[candidates], costs[candidates]))
         offset = math.dist(view.origin, self.memory.xy[self.place])
-        value = costs + elementary.lengths(*(roadmap.points - self.goal).T)
-        closer = candidates[self._closer(roadmap.points[candidates], record)]
-        if len(closer):
-            best = int(closer[np.argmin(value[closer])])
-            self._draw_on(roadmap.points[best], float(outward[best]), float(costs[best]) + offset)
-        candidates = candidates[self._worth(roadmap.points[candidates], record)]
+        edge = Edge(roadmap, costs, outward, np.flatnonzero(np.isfinite(costs) & beside), offset)
+        self.noted = {}
+        self._refute(view, rim, known, edge)
+        self._draw_on(edge, record)
+        self._remember(view, edge, record)
+        self._look_beyond(view)
+        return self.noted
+
+    def _remember(self, view: View, edge: Edge, record: float) -> None:
+        """New openings, the most promising first."""
+        points = edge.roadmap.points
+        value = edge.costs + elementary.lengths(*(points - self.goal).T)
+        candidates = edge.beside[self._worth(points[edge.beside], record)]
         decided: list[int] = []
         for point in candidates[np.argsort(value[candidates], kind="stable")].tolist():
-            here = roadmap.points[point]
+            here = points[point]
             if not self.memory.has_room:
                 break
-            if any(math.dist(here, roadmap.points[p]) < self.spacing for p in decided):
+            if any(math.dist(here, points[p]) < self.spacing for p in decided):
                 continue
             decided.append(point)
             if self._closer(here[None], record)[0] or not self._seen_before(view, here):
                 number = self.memory.add(float(here[0]), float(here[1]), OPENING)
-                self.gaze[number] = outward[point]
                 self.moves[number] = 0
-                self.memory.join(self.place, number, float(costs[point]) + offset)
-        self._look_beyond(view)
+                self._place(number, edge, point)
+
+    def _place(self, number: int, edge: Edge, point: int) -> None:
+        """An opening without edges is at this point of the road map from now on."""
+        self.memory.join(self.place, number, float(edge.costs[point]) + edge.offset)
+        self.gaze[number] = edge.outward[point]
+        self.noted[number] = point
 
     def _look_beyond(self, view: View) -> None:
         """Note which openings in view have a wall right before them towards the goal."""
@@ -146,23 +172,26 @@ class Openings:
         clear = view.passable(points, points + offset * share[:, None], self.inflation)
         self.walled[openings] = ~clear
 
-    def _draw_on(self, point: FloatArray, outward: float, cost: float) -> None:
+    def _draw_on(self, edge: Edge, record: float) -> None:
         """The best place ahead takes the place of a nearby opening that is farther from the goal.
 
         Otherwise openings that were there first would draw the robot to and fro across the open.
         """
-        number, distance = self.memory.nearest(float(point[0]), float(point[1]), OPENING)
-        if distance >= self.spacing:
+        points = edge.roadmap.points
+        closer = edge.beside[self._closer(points[edge.beside], record)]
+        if not len(closer):
             return
-        x, y = self.memory.xy[number].tolist()
-        if math.dist((x, y), self.goal) > math.dist(point, self.goal):
-            self._move(number, point, outward, cost)
+        left = elementary.lengths(*(points[closer] - self.goal).T)
+        best = int(np.argmin(edge.costs[closer] + left))
+        x, y = points[closer[best]].tolist()
+        number, distance = self.memory.nearest(x, y, OPENING)
+        if distance < self.spacing and math.dist(self.memory.xy[number], self.goal) > left[best]:
+            self._move(number, edge, int(closer[best]))
 
-    def _move(self, number: int, point: FloatArray, outward: float, cost: float) -> None:
-        """Put an opening elsewhere; cost: of the way there from the present place [m]."""
-        self.memory.move(number, float(point[0]), float(point[1]))
-        self.memory.join(self.place, number, cost)
-        self.gaze[number] = outward
+    def _move(self, number: int, edge: Edge, point: int) -> None:
+        x, y = edge.roadmap.points[point].tolist()
+        self.memory.move(number, x, y)
+        self._place(number, edge, point)
 
     def _worth(self, points: FloatArray, record: float) -> BoolArray:
         """Which (n, 2) points are worth a new opening.
@@ -228,9 +257,9 @@ class Openings:
 
     def _move_on(self, view: View, number: int, edge: Edge) -> bool:
         """The edge of the unseen recedes as the robot comes closer; its opening goes with it."""
-        points, outward, costs = edge
-        if not len(points) or self.moves[number] >= MOST_MOVES:
+        if not len(edge.beside) or self.moves[number] >= MOST_MOVES:
             return False
+        points = edge.roadmap.points[edge.beside]
         distance = elementary.lengths(*(points - self.memory.xy[number]).T)
         distance[elementary.lengths(*(points - view.origin).T) < 0.5 * self.spacing] = np.inf
         nearest = int(np.argmin(distance))
@@ -242,15 +271,14 @@ class Openings:
         if apart < self.spacing * self.spacing:
             return False
         self.moves[number] += 1
-        offset = math.dist(view.origin, self.memory.xy[self.place])
-        self._move(number, points[nearest], float(outward[nearest]), float(costs[nearest]) + offset)
+        self._move(number, edge, int(edge.beside[nearest]))
         return True
 
     def best(self, seeds: dict[int, float], kept: int) -> Route:
-        """To the reachable opening with the least g + h; `kept` stays unless another is clearly better.
+        """To the reachable opening of the least estimate, or to `kept` if none is clearly better.
 
         seeds: way points in reach and their costs [m]. No opening that costs more than the best one's
-        g + h can be better, so the search ends there.
+        estimate can be better, so the search ends there.
         """
         memory = self.memory
         origin: dict[int, int] = {}
@@ -259,7 +287,7 @@ class Openings:
             if cost > value + self.spacing:
                 break
             if memory.kind[number] == OPENING:
-                estimate = cost + math.dist(memory.xy[number], self.goal)
+                estimate = cost + EAGERNESS * math.dist(memory.xy[number], self.goal)
                 if self.walled[number]:
                     estimate += self.wall
                 if (estimate, number) < (value, best):
@@ -289,7 +317,7 @@ def edge_samples(view: View, margin: float) -> FloatArray:
 
 
 def goal_sample(view: View, goal: FloatArray, margin: float) -> FloatArray:
-    """The furthest point in sight straight towards the goal, (1, 2) [m], or none when it is out of view."""
+    """The furthest point in sight straight towards the goal, (1, 2) [m]; none if out of view."""
     bearing, distance = view.polar(goal[None])
     if abs(bearing[0]) >= view.fan.angles[-1]:
         return NO_POINTS
