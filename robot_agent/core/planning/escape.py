@@ -48,6 +48,13 @@ WALLS_GO_ON = 0.5
 """Way that an opening with a wall between it and the goal is taken to cost more, in laser ranges: a wall
 that leaves the view is likelier to go on than to end right there."""
 
+PATIENCE_S = 8.0
+"""Time after which the robot looks and plans anew whatever it does [s]."""
+
+LONGEST = 40.0
+"""Search budgets after which it gives up without proof. The longest way of the campaigns took a fifth of
+it; it is there so that an answer comes even if rounding keeps a boundary from closing."""
+
 MOST_BLOCKED = 3
 """Planning moments without a move after which the robot makes room for itself first."""
 
@@ -83,6 +90,8 @@ class Escape:
         self.distbug = DistBug(self.goal, self.clearance)
         self.budget = self.section.patience * self.body.laser_range
         self.spent = 0.0
+        self.patience = PATIENCE_S * 1e9 / briefing.period_ns
+        self.waited = 0
         self.target, self.tries, self.blocked = NOTHING, 0, 0
         self.turn: float | None = None
         self.planned: Pose | None = None
@@ -105,9 +114,11 @@ class Escape:
         return Guidance(twist, self.progress, self.remaining, self.passage, self.waypoint, notes)
 
     def _due(self, pose: Pose) -> bool:
-        """Is it time to look and plan anew: a piece driven or turned, the way at its end, or blocked."""
+        """Is it time to look and plan anew: a piece driven or turned, the way at its end, or blocked, or
+        none of it for long, which happens when the team makes the leader wait."""
         last = self.planned
-        if last is None or self.driver.shielded > 3:
+        self.waited += 1
+        if last is None or self.driver.shielded > 3 or self.waited > self.patience:
             return True
         if self.turn is not None and abs(wrap_angle(self.turn - pose.heading)) < 0.1:
             return True
@@ -165,10 +176,10 @@ class Escape:
         moved = math.inf
         if self.planned is not None:
             moved = math.dist((pose.x, pose.y), (self.planned.x, self.planned.y))
-            self.spent += max(moved, 0.2 * self.inflation)
+            self.spent += max(moved, 0.5 * self.inflation)
         still = self.driver.shielded > 0 and moved < 0.2 * self.inflation
         self.blocked = self.blocked + 1 if still else 0
-        self.planned = pose
+        self.planned, self.waited = pose, 0
         self.driver.shielded = 0
         self.record = min(self.record, math.dist((pose.x, pose.y), self.goal))
         if self.record < self.mark - self.inflation:
@@ -262,9 +273,9 @@ class Escape:
 
     def _circle(self, view: View, roadmap: RoadMap, costs: FloatArray) -> None:
         way = self.distbug.way(view, roadmap, costs)
-        if self.distbug.enclosed:
+        if self.distbug.enclosed or self.spent > LONGEST * self.budget:
             self.progress = Progress.NO_WAY
-            self.notes.append(Note("no_way", {"record": self.record}))
+            self.notes.append(Note("no_way", {"record": self.record, "proven": self.distbug.enclosed}))
         elif way is None:
             self._face(self.distbug.turn or 0.0)
         else:

@@ -31,6 +31,14 @@ def test_a_parted_edge_is_no_way() -> None:
     assert [number for number, _ in points.routes({0: 0.0}, {})] == [0, 1]
 
 
+def test_a_moved_way_point_is_not_reached_by_its_old_edges() -> None:
+    """They had the lengths to where it was: a receding opening drew the robot around a pillar."""
+    points = line(3)
+    points.move(1, 9.0, 9.0)
+    assert points.xy[1].tolist() == [9.0, 9.0]
+    assert [number for number, _ in points.routes({0: 0.0}, {})] == [0]
+
+
 def test_of_parallel_edges_the_shorter_stays() -> None:
     points = line(2)
     points.join(1, 0, 3.0)
