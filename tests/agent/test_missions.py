@@ -2,13 +2,15 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from itertools import groupby
+from operator import itemgetter
 from pathlib import Path
 
 import pytest
 
 from onehop import scenario_file
 from onehop.contracts.messages import Action, Outcome
-from onehop.contracts.team import Mode, Status
+from onehop.contracts.team import Mode, Shape, Status
 from onehop.drive import inline
 from world_server.core.world import World
 
@@ -166,6 +168,46 @@ def test_a_study_map_is_crossed_without_a_contact(number):
     outcome, _ = mission(SCENARIOS / f"map{number}.toml", "seed=4")
     assert outcome.outcome == "arrived", outcome.reason
     assert outcome.collisions == 0
+
+
+MAP3_PASSAGES = (
+    ((37.0, 28.0), (40.5, 32.0)),
+    ((53.0, 55.0), (55.0, 58.5)),
+    ((88.0, 66.0), (91.5, 69.0)),
+)
+"""Two opposite corners of each, 3.5 m wide [m]."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_passages_are_crossed_in_column_and_the_shape_stands_again_behind_them(seed):
+    """Robot 3 leads a column through each of map3's, and before the next one and at the goal every
+    follower is in its slot of the hexagon again."""
+    seen: list[tuple[Shape, int | None, float]] = []
+
+    def watch(world: World, actions: Mapping[int, Action]) -> None:
+        pose = next(one.pose for one in world.truth().present if one.robot == 3)
+        inside = [
+            number
+            for number, ((x0, y0), (x1, y1)) in enumerate(MAP3_PASSAGES)
+            if x0 <= pose.x <= x1 and y0 <= pose.y <= y1
+        ]
+        worst = max(action.status.error for i, action in actions.items() if i != 3)
+        seen.append((actions[3].status.shape, inside[0] if inside else None, worst))
+
+    scenario = scenario_file.load(SCENARIOS / "map3.toml", (f"seed={seed}",))
+    outcome = inline.run(scenario, None, watch)
+    assert outcome.outcome == "arrived", outcome.reason
+    assert outcome.arrived == (1, 2, 3, 4, 5, 6)
+    assert outcome.collisions == 0
+    assert {shape for shape, passage, _ in seen if passage is not None} == {Shape.COLUMN}
+    crossed = [passage for _, passage, _ in seen if passage is not None]
+    assert [passage for passage, _ in groupby(crossed)] == [0, 1, 2]
+    shapes = [
+        (shape, min(worst for _, _, worst in run)) for shape, run in groupby(seen, key=itemgetter(0))
+    ]
+    assert [shape for shape, _ in shapes] == [Shape.HEXAGON, Shape.COLUMN] * 3 + [Shape.HEXAGON]
+    assert all(best < 0.5 for shape, best in shapes if shape is Shape.HEXAGON), shapes
 
 
 @pytest.mark.slow

@@ -20,7 +20,7 @@ from onehop.contracts.scenario import Briefing
 from robot_agent.core.planning.distbug import DistBug
 from robot_agent.core.planning.driving import Driver
 from robot_agent.core.planning.guidance import Guidance, Progress
-from robot_agent.core.planning.memory import NOTHING
+from robot_agent.core.planning.memory import NOTHING, OPENING, PLACE
 from robot_agent.core.planning.openings import Openings, corner_samples, edge_samples, goal_sample
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap, sample_fan, spread_draws
@@ -54,6 +54,9 @@ PATIENCE_S = 8.0
 LONGEST = 40.0
 """Search budgets after which it gives up without proof. The longest way of the campaigns took a fifth of
 it; it is there so that an answer comes even if rounding keeps a boundary from closing."""
+
+ASIDE = 1.2
+"""Bearing from which a way point may lie out of view, so that the robot turns to it first [rad]."""
 
 MOST_BLOCKED = 3
 """Planning moments without a move after which the robot makes room for itself first."""
@@ -93,6 +96,7 @@ class Escape:
         self.patience = PATIENCE_S * 1e9 / briefing.period_ns
         self.waited = 0
         self.target, self.tries, self.blocked = NOTHING, 0, 0
+        self.lately: dict[int, tuple[float, float, float, tuple[float, float]]] = {}
         self.turn: float | None = None
         self.planned: Pose | None = None
         self.remaining = self.record = math.dist((pose.x, pose.y), self.goal)
@@ -154,13 +158,13 @@ class Escape:
         self.openings.note_place(pose, lengths, self.body.laser_range)
         noted = self.openings.note(view, roadmap, costs, known, self.record)
         reach |= {number: (point, float(costs[point])) for number, point in noted.items()}
-        self.passage = passage_width(view, 8.0 * self.inflation)
         backtrack = False
         if self.blocked >= MOST_BLOCKED:
             self._make_room(view)
         else:
             backtrack = self._choose(view, roadmap, costs, reach)
         way = np.array(self.driver.way) if self.turn is None else NO_POINTS
+        self.passage = passage_width(view, way, 8.0 * self.inflation)
         self.survey = Survey(pose, samples, roadmap, way, backtrack)
 
     def _free_goal(self, view: View) -> FloatArray:
@@ -212,6 +216,7 @@ class Escape:
         """Way points to the target, the target first; none when it is time for DistBug."""
         openings, memory = self.openings, self.openings.memory
         seeds = {n: cost for n, (_, cost) in sorted(reach.items())}
+        seeds |= self._lately_in_reach(pose, seeds)
         seeds.setdefault(openings.place, math.dist((pose.x, pose.y), memory.xy[openings.place]))
         route = openings.best(seeds, self.target) if self.phase is Phase.SEARCH else None
         if route is None or route.target == NOTHING:
@@ -229,6 +234,25 @@ class Escape:
         self.remaining = route.cost + math.dist(memory.xy[best], self.goal)
         return route.chain()
 
+    def _lately_in_reach(self, pose: Pose, seeds: dict[int, float]) -> dict[int, float]:
+        """Way points that were in reach a moment ago and are now behind the robot, and what they cost.
+
+        Without them one would seem to be farther off than before because the robot turned its back to
+        it, and it would turn back, and so on.
+        """
+        memory, found = self.openings.memory, {}
+        for number, (x, y, cost, at) in self.lately.items():
+            moved = math.dist(at, (pose.x, pose.y))
+            same = memory.kind[number] & (PLACE + OPENING) and (x, y) == tuple(memory.xy[number])
+            bearing = wrap_angle(elementary.atan2(y - pose.y, x - pose.x) - pose.heading)
+            if number not in seeds and same and moved < self.openings.spacing and abs(bearing) > ASIDE:
+                found[number] = cost + moved
+        here = (pose.x, pose.y)
+        self.lately = {n: self.lately[n] for n in found} | {
+            n: (*memory.xy[n].tolist(), cost, here) for n, cost in seeds.items() if n != GOAL
+        }
+        return found
+
     def _go(self, pose: Pose, roadmap: RoadMap, chain: list[int], reach: Reach) -> bool:
         """Take the way to the furthest way point of the chain (target first) that is in reach."""
         here, xy = (pose.x, pose.y), self.openings.memory.xy
@@ -242,7 +266,7 @@ class Escape:
             return True
         x, y = xy[ahead[-1]].tolist()
         bearing = elementary.atan2(y - pose.y, x - pose.x)
-        if abs(wrap_angle(bearing - pose.heading)) > 1.2:
+        if abs(wrap_angle(bearing - pose.heading)) > ASIDE:
             self._face(bearing)
             return True
         self.tries += 1

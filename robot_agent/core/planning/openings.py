@@ -38,7 +38,7 @@ MOST_MOVES = 8
 """Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
 
 
-EAGERNESS = 1.3
+EAGERNESS = 1.6
 """Weight of the straight distance to the goal against the way to an opening. At 1 a robot that went past
 a door goes on along the wall for ever: every step away from the door makes it dearer by as much."""
 
@@ -156,12 +156,16 @@ class Openings:
 
     def _place(self, number: int, edge: Edge, point: int) -> None:
         """An opening without edges is at this point of the road map from now on."""
+        self.walled[number] = False
         self.memory.join(self.place, number, float(edge.costs[point]) + edge.offset)
         self.gaze[number] = edge.outward[point]
         self.noted[number] = point
 
     def _look_beyond(self, view: View) -> None:
-        """Note which openings in view have a wall right before them towards the goal."""
+        """Note which openings in view have a wall right before them towards the goal.
+
+        Walls do not go away: what was seen there once counts from any heading.
+        """
         openings = self.memory.of_kind(OPENING)
         points = self.memory.xy[openings]
         shown = view.visible(points)
@@ -170,7 +174,7 @@ class Openings:
         distance = elementary.lengths(offset[:, 0], offset[:, 1])
         share = np.minimum(1.0, LOOK_BEYOND * self.spacing / np.maximum(distance, 1e-9))
         clear = view.passable(points, points + offset * share[:, None], self.inflation)
-        self.walled[openings] = ~clear
+        self.walled[openings] |= ~clear
 
     def _draw_on(self, edge: Edge, record: float) -> None:
         """The best place ahead takes the place of a nearby opening that is farther from the goal.

@@ -93,7 +93,6 @@ class Stepwise:
     def _plan(self, pose: Pose, scan: Ranges) -> None:
         """One round of Algorithm 2 from where the robot stands, facing the fan's direction."""
         view = View(self.fan, pose, scan, 0.1 * self.inflation)
-        self.passage = passage_width(view, 8.0 * self.inflation)
         obstacle = classify(view, self.section.classify_range) if self.limited else Obstacle.NONE
         if obstacle is Obstacle.NONE and not self.turns:
             ahead = self._to_goal(pose)
@@ -113,6 +112,7 @@ class Stepwise:
         samples = sample_fan(view, draws, direction, half, self.inflation)
         roadmap = RoadMap(view, samples, self.goal[None], self.inflation, self.inflation)
         self._advance(pose, roadmap, samples, direction if turned else None)
+        self.passage = passage_width(view, np.array(self.driver.way), 8.0 * self.inflation)
 
     def _advance(
         self, pose: Pose, roadmap: RoadMap, samples: FloatArray, direction: float | None
