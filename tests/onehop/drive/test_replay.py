@@ -82,10 +82,10 @@ def test_only_the_asked_robot_and_time_are_compared(recorded: Path, tmp_path: Pa
 
 def test_what_if_names_the_first_action_that_would_differ(recorded: Path) -> None:
     log = LogFile(recorded)
-    faster = scenario_file.changed(log.bundle.scenario, ["robot.leader_speed=0.5"])
-    report = replay(log, robots=(2,), parts=False, scenario=faster)
+    slower = scenario_file.changed(log.bundle.scenario, ["robot.leader_speed=0.5"])
+    report = replay(log, robots=(3,), parts=False, scenario=slower)
     assert report.first is not None
-    assert report.first.robot == 2
+    assert (report.first.robot, report.first.field) == (3, "twist.v")
 
 
 def test_a_first_difference_has_its_path_and_both_values() -> None:
