@@ -2,10 +2,11 @@
 
 At every planning moment the robot draws a local road map in what it sees. It prefers to search by
 openings (openings.py), which finds short ways. That search may spend a bounded distance without coming
-closer to the goal than ever before; then DistBug (distbug.py) takes over from the place closest to the
-goal, until the record is broken. Completeness rests on DistBug alone, whose proof holds from any start:
-every record is better than the last by a fixed step, so there are finitely many of them, and between two
-lie a bounded search and a boundary loop that ends with a better place or with "no way".
+closer to the goal than ever before; a planning moment spends some even if the robot stands. Then DistBug
+(distbug.py) takes over from the place closest to the goal, until the record is broken. Completeness
+rests on DistBug alone, whose proof holds from any start: every record is better than the last by a fixed
+step, so there are finitely many of them, and between two lie a bounded search and a boundary loop that
+ends with a better place or with "no way".
 """
 
 import math
@@ -51,9 +52,9 @@ that leaves the view is likelier to go on than to end right there."""
 PATIENCE_S = 8.0
 """Time after which the robot looks and plans anew whatever it does [s]."""
 
-LONGEST = 40.0
-"""Search budgets after which it gives up without proof. The longest way of the campaigns took a fifth of
-it; it is there so that an answer comes even if rounding keeps a boundary from closing."""
+LONGEST = 2000.0
+"""Way without coming closer after which it gives up without proof, in laser ranges. It is there so that
+an answer comes even if rounding keeps a boundary from closing; no way of the campaigns was that long."""
 
 ASIDE = 1.2
 """Bearing from which a way point may lie out of view, so that the robot turns to it first [rad]."""
@@ -297,7 +298,7 @@ class Escape:
 
     def _circle(self, view: View, roadmap: RoadMap, costs: FloatArray) -> None:
         way = self.distbug.way(view, roadmap, costs)
-        if self.distbug.enclosed or self.spent > LONGEST * self.budget:
+        if self.distbug.enclosed or self.spent > LONGEST * self.body.laser_range:
             self.progress = Progress.NO_WAY
             self.notes.append(Note("no_way", {"record": self.record, "proven": self.distbug.enclosed}))
         elif way is None:
