@@ -26,8 +26,9 @@ from onehop.contracts.sections import (
 from onehop.drive.solo import solo
 from world_server.core.mapfile import load_map
 
-BUDGET_S = {"corner": 600.0, "room": 300.0}
-"""Simulated time of a run [s]. In the room: about twice what the slowest `escape` takes."""
+BUDGET_S = {"corner": 600.0, "room": 140.0}
+"""Simulated time of a run [s]. In the room: a little more than the slowest `escape` takes. `modified` is
+caught there, but not for ever: in 3 of 100 runs of 300 s it followed a side wall out by chance."""
 
 ROOM: tuple[Point, ...] = (
     (51.0, 43.5), (77.0, 43.5), (77.0, 56.5), (51.0, 56.5),
