@@ -153,7 +153,7 @@ class Driver:
 
     def _least2(self, near: FloatArray) -> float:
         """Least squared distance to keep [m2]: the clearance, or what there is of it."""
-        have2 = float((near[:, 0] ** 2 + near[:, 1] ** 2).min())
+        have2 = float((near[:, 0] * near[:, 0] + near[:, 1] * near[:, 1]).min())
         return min(self.clearance * self.clearance, have2 - 1e-9)
 
     def _aim(self, pose: Pose, lookahead: float) -> Point:
