@@ -20,7 +20,8 @@ from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario, robot_briefing
 from onehop.contracts.sections import GoalSection, MapSection, RobotSection
 from robot_agent.core.planning import make_pathfinder
-from robot_agent.core.planning.roadmap import RoadMap, sample_fan
+from robot_agent.core.planning.roadmap import RoadMap
+from robot_agent.core.planning.sampling import sample_fan
 from robot_agent.core.planning.view import NO_POINTS, View
 from robot_agent.core.scan import Fan
 from world_server.core.laser import Laser

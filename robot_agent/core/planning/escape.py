@@ -22,9 +22,16 @@ from robot_agent.core.planning.distbug import DistBug
 from robot_agent.core.planning.driving import Driver
 from robot_agent.core.planning.guidance import Guidance, Progress
 from robot_agent.core.planning.memory import NOTHING, OPENING, PLACE
-from robot_agent.core.planning.openings import Openings, corner_samples, edge_samples, goal_sample
+from robot_agent.core.planning.openings import Openings
 from robot_agent.core.planning.passage import passage_width
-from robot_agent.core.planning.roadmap import RoadMap, sample_fan, spread_draws
+from robot_agent.core.planning.roadmap import RoadMap
+from robot_agent.core.planning.sampling import (
+    corner_samples,
+    edge_samples,
+    goal_sample,
+    sample_fan,
+    spread_draws,
+)
 from robot_agent.core.planning.survey import Survey
 from robot_agent.core.planning.view import NO_POINTS, Afterimage, View
 from robot_agent.core.scan import Fan, FloatArray

@@ -16,7 +16,7 @@ from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, wrap_angle
 from robot_agent.core.planning.memory import CLOSED, NOTHING, OPENING, PLACE, Indices, WayPoints
 from robot_agent.core.planning.roadmap import RoadMap
-from robot_agent.core.planning.view import NO_POINTS, BoolArray, View, squared_distances
+from robot_agent.core.planning.view import BoolArray, View, squared_distances
 from robot_agent.core.scan import FloatArray
 
 
@@ -311,40 +311,6 @@ class Openings:
         }
         best = min(costs, key=lambda n: (math.dist(memory.xy[n], self.goal), n))
         return Route(best, costs[best], origin)
-
-
-def edge_samples(view: View, margin: float) -> FloatArray:
-    """Points where outlines leave the laser's range, (n, 2) [m]: chance may miss them."""
-    beside = np.convolve(view.solid, np.ones(13), mode="same") > 0
-    far = np.flatnonzero(~view.solid & beside)
-    return view.origin + view.directions[far] * (view.fan.range - margin)
-
-
-def goal_sample(view: View, goal: FloatArray, margin: float) -> FloatArray:
-    """The furthest point in sight straight towards the goal, (1, 2) [m]; none if out of view."""
-    bearing, distance = view.polar(goal[None])
-    if abs(bearing[0]) >= view.fan.angles[-1]:
-        return NO_POINTS
-    spacing = view.fan.angles[1] - view.fan.angles[0]
-    reach = view.sight[round(float((bearing[0] - view.fan.angles[0]) / spacing))] - margin
-    share = max(float(reach), 0.0) / max(float(distance[0]), 1e-9)
-    return (view.origin + (goal - view.origin) * share)[None]
-
-
-def corner_samples(view: View, gap: float, room: float) -> FloatArray:
-    """Points beside what the robot sees pass before something farther off, (n, 2) [m].
-
-    A shortest way bends there and nowhere else, and chance draws none of them right there. gap: jump of
-    the range between two beams [m]; room: to leave to the near one's end [m].
-    """
-    jumps = np.diff(view.sight)
-    beam = np.flatnonzero(np.abs(jumps) > gap)
-    left = np.where(jumps[beam] > 0.0, 1.0, -1.0)
-    near = np.where(jumps[beam] > 0.0, beam, beam + 1)
-    ahead = view.directions[near]
-    aside = np.column_stack((-left * ahead[:, 1], left * ahead[:, 0]))
-    end = view.origin + ahead * view.sight[near, None]
-    return np.concatenate((end + room * aside, end + room * (aside + ahead)))
 
 
 def unseen_rim(view: View, gap: float, goal: FloatArray, record: float) -> tuple[FloatArray, FloatArray]:

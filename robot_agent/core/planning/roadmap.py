@@ -1,7 +1,6 @@
 """The local road map: random points in the visible part of a fan, joined where the way is clear, and A*.
 
-Thesis 3.4.1: sample, join, search. Points are drawn inside the visible region only, since it is known;
-what the laser did not see is not free. Every road map lives for one scan.
+Thesis 3.4.1: sample (sampling.py), join, search. Every road map lives for one scan.
 """
 
 import heapq
@@ -22,40 +21,8 @@ NEIGHBOURS = 6
 DISCOMFORT = 2.0
 """A way that keeps only the clearance is taken if the comfortable one is more than this much longer."""
 
-R2: FloatArray = np.array((0.7548776662466927, 0.5698402909980532))
-"""1/g and 1/g^2 with g^3 = g + 1."""
-
 PROBES: FloatArray = np.arange(1, 8)[:, None] / 8.0
 """Where along an edge its visibility is probed."""
-
-
-def spread_draws(count: int, rng: np.random.Generator) -> FloatArray:
-    """Draws for `sample_fan`, (count, 2): an additive recurrence of low discrepancy, shifted at random.
-
-    Quasi-random points leave smaller holes than independent ones (Branicky, LaValle, Olson and Yang,
-    "Quasi-randomized path planning", ICRA 2001); the multiples are those of Roberts's R2 sequence.
-    """
-    return np.asarray((rng.random(2) + np.arange(count)[:, None] * R2) % 1.0)
-
-
-def sample_fan(view: View, draws: FloatArray, centre: float, half: float, margin: float) -> FloatArray:
-    """Points of the visible region inside the fan, (n, 2) float64 [m], map frame.
-
-    draws: (n, 2) uniform in [0, 1): direction, and radius as a share of the free range. centre, half:
-    direction [rad, map frame] and half opening of the fan; it is cut to the field of view. margin: room
-    to leave to the end of the laser's range, beyond which anything may stand [m].
-    """
-    angles = view.fan.angles
-    offset = math.remainder(centre - view.pose.heading, 2.0 * math.pi)
-    low = min(max(offset - half, float(angles[0])), float(angles[-1]))
-    high = max(min(offset + half, float(angles[-1])), float(angles[0]))
-    bearing = low + (high - low) * draws[:, 0]
-    beam = np.rint((bearing - angles[0]) / (angles[1] - angles[0])).astype(np.intp)
-    reach = np.minimum(view.sight[beam], view.fan.range - margin)
-    radius = reach * np.sqrt(draws[:, 1]) * 0.98
-    heading = bearing + view.pose.heading
-    directions = np.column_stack((elementary.cosines(heading), elementary.sines(heading)))
-    return np.asarray(view.origin + directions * radius[:, None])
 
 
 class RoadMap:

@@ -22,7 +22,8 @@ from robot_agent.core.planning.driving import Driver
 from robot_agent.core.planning.guidance import Guidance, Progress
 from robot_agent.core.planning.obstacle import TURNS, Obstacle, classify, fan_direction
 from robot_agent.core.planning.passage import passage_width
-from robot_agent.core.planning.roadmap import RoadMap, sample_fan
+from robot_agent.core.planning.roadmap import RoadMap
+from robot_agent.core.planning.sampling import sample_fan
 from robot_agent.core.planning.survey import Survey
 from robot_agent.core.planning.view import NO_POINTS, BoolArray, View, squared_distances
 from robot_agent.core.scan import Fan, FloatArray

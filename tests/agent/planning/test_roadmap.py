@@ -11,7 +11,8 @@ from onehop.contracts.geometry import Pose
 from onehop.contracts.randomness import generator
 from onehop.contracts.sections import MapSection, RobotSection
 from robot_agent.core.planning.passage import passage_width
-from robot_agent.core.planning.roadmap import RoadMap, sample_fan
+from robot_agent.core.planning.roadmap import RoadMap
+from robot_agent.core.planning.sampling import sample_fan
 from robot_agent.core.planning.view import (
     NO_POINTS,
     Afterimage,
