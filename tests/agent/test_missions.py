@@ -179,7 +179,7 @@ MAP3_PASSAGES = (
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 3, 4])
+@pytest.mark.parametrize("seed", [1, 2, 3])
 def test_passages_are_crossed_in_column_and_the_shape_stands_again_behind_them(seed):
     """Robot 3 leads a column through each of map3's, and before the next one and at the goal every
     follower is in its slot of the hexagon again."""
