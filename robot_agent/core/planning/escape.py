@@ -210,6 +210,9 @@ class Escape:
             self.target = GOAL
             self._take(roadmap.path(reach[GOAL][0]), reach[GOAL][1])
             return False
+        if self.spent > LONGEST * self.body.laser_range:
+            self._end(proven=False)
+            return False
         if self.phase is Phase.SEARCH and self.spent > self.budget:
             self._enter(Phase.RETURN)
         if self.phase is not Phase.CIRCLE:
@@ -305,13 +308,17 @@ class Escape:
 
     def _circle(self, view: View, roadmap: RoadMap, costs: FloatArray) -> None:
         way = self.distbug.way(view, roadmap, costs)
-        if self.distbug.enclosed or self.spent > LONGEST * self.body.laser_range:
-            self.progress = Progress.NO_WAY
-            self.notes.append(Note("no_way", {"record": self.record, "proven": self.distbug.enclosed}))
+        if self.distbug.enclosed:
+            self._end(proven=True)
         elif way is None:
             self._face(self.distbug.turn or 0.0)
         else:
             self._take(way, math.dist(view.origin, self.goal))
+
+    def _end(self, proven: bool) -> None:
+        """There is no way to the goal, or none was found for very long."""
+        self.progress = Progress.NO_WAY
+        self.notes.append(Note("no_way", {"record": self.record, "proven": proven}))
 
     def _face(self, heading: float) -> None:
         """Turn in place to a heading."""

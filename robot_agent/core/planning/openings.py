@@ -37,7 +37,6 @@ class Edge(NamedTuple):
 MOST_MOVES = 8
 """Moves of one opening: the shadow of a pillar would otherwise lead around it for ever."""
 
-
 EAGERNESS = 1.3
 """Weight of the straight distance to the goal against the way to an opening. At 1 a robot that went past
 a door goes on along the wall for ever: every step away from the door makes it dearer by as much."""

@@ -143,6 +143,22 @@ def test_a_leader_that_cannot_drive_its_way_makes_room_first() -> None:
     assert end[1] > 0.6 + 0.9 * INFLATION
 
 
+def test_a_leader_that_never_comes_closer_gives_up_in_the_end_and_says_that_it_proved_nothing() -> None:
+    """Held in place, as by a team that makes it wait; the bound made short."""
+    scenario, walls = alone(field(size=30.0), (15.0, 15.0, 0.0), (25.0, 25.0))
+    finder = make_pathfinder(robot_briefing(scenario, 1, 0), Pose(5.0, 5.0, 0.0), generator(1, "test"))
+    assert isinstance(finder, Escape)
+    scan = Laser(walls, RobotSection()).scans(np.array([[5.0, 5.0, 0.0]]), np.zeros(1, dtype=np.int32))
+    guidance = finder.step(Pose(5.0, 5.0, 0.0), scan[0])
+    finder.spent = 1999.9 * RobotSection().laser_range
+    for _ in range(6 * 170):
+        guidance = finder.step(Pose(5.0, 5.0, 0.0), scan[0])
+        if guidance.progress is not Progress.DRIVING:
+            break
+    assert guidance.progress is Progress.NO_WAY
+    assert [note.data["proven"] for note in guidance.notes if note.kind == "no_way"] == [False]
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2])
 def test_a_door_beside_a_long_wall_is_not_passed_by(seed: int) -> None:
