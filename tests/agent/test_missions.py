@@ -179,10 +179,12 @@ MAP3_PASSAGES = (
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1, 2, 3, 4, 5, 6, 7, 8])
 def test_passages_are_crossed_in_column_and_the_shape_stands_again_behind_them(seed):
-    """Robot 3 leads a column through each of map3's, and before the next one and at the goal every
-    follower is in its slot of the hexagon again."""
+    """Robot 3 leads a column through each of map3's: from before it, or within its first half second, as
+    long as a passage must be in view to count. Before the next one and at the goal every follower is in
+    its slot of the hexagon again.
+    """
     seen: list[tuple[Shape, int | None, float]] = []
 
     def watch(world: World, actions: Mapping[int, Action]) -> None:
@@ -200,9 +202,9 @@ def test_passages_are_crossed_in_column_and_the_shape_stands_again_behind_them(s
     assert outcome.outcome == "arrived", outcome.reason
     assert outcome.arrived == (1, 2, 3, 4, 5, 6)
     assert outcome.collisions == 0
-    assert {shape for shape, passage, _ in seen if passage is not None} == {Shape.COLUMN}
-    crossed = [passage for _, passage, _ in seen if passage is not None]
-    assert [passage for passage, _ in groupby(crossed)] == [0, 1, 2]
+    crossed = [(passage, shape) for shape, passage, _ in seen if passage is not None]
+    assert [passage for passage, _ in groupby(passage for passage, _ in crossed)] == [0, 1, 2]
+    assert sum(shape is not Shape.COLUMN for _, shape in crossed) <= 10
     shapes = [
         (shape, min(worst for _, _, worst in run)) for shape, run in groupby(seen, key=itemgetter(0))
     ]
