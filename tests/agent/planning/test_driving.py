@@ -40,7 +40,6 @@ def test_way_ends_at_its_last_point() -> None:
     for _ in range(80):
         pose = moved(pose, on_way.drive(Pose(*map(float, pose)), CLEAR))
     assert math.dist(pose[:2], (2.0, 0.0)) < 0.01
-    assert on_way.left(Pose(1.5, 0.0, 0.0)) == pytest.approx(0.5)
 
 
 def test_a_way_behind_is_turned_to_on_the_spot_without_changing_sides() -> None:
