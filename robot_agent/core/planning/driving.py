@@ -5,7 +5,6 @@ there is 2 sin(alpha) / lookahead. The speed is the leader's constant speed; it 
 turn rate could not follow, or where the next step would come closer to an obstacle than is allowed.
 """
 
-import itertools
 import math
 
 import numpy as np
@@ -58,13 +57,6 @@ class Driver:
         self.leg = 0
         self.turning = 0
         self._held = None
-
-    def left(self, pose: Pose) -> float:
-        """Length of the way still to drive [m]."""
-        if len(self.way) < 2:
-            return 0.0
-        points = [(pose.x, pose.y), *self.way[self.leg + 1 :]]
-        return sum(math.dist(a, b) for a, b in itertools.pairwise(points))
 
     def drive(self, pose: Pose, scan: Ranges) -> Twist:
         """The twist for this tick on the way; standstill at its end."""

@@ -11,6 +11,7 @@ ends with a better place or with "no way".
 
 import math
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Note, Ranges
 from onehop.contracts.scenario import Briefing
 from robot_agent.core.planning.distbug import DistBug
-from robot_agent.core.planning.driving import Driver
+from robot_agent.core.planning.driving import Driver, Point
 from robot_agent.core.planning.guidance import Guidance, Progress
 from robot_agent.core.planning.memory import NOTHING, OPENING, PLACE
 from robot_agent.core.planning.openings import Openings
@@ -73,6 +74,14 @@ Reach = dict[int, tuple[int, float]]
 """Way point (or GOAL) -> point of the road map, and its cost [m]."""
 
 
+class Glimpse(NamedTuple):
+    """A way point that was in reach: where it was, what it cost [m], and from where."""
+
+    place: Point
+    cost: float
+    seen_from: Point
+
+
 class Phase(Enum):
     """How the way is being sought."""
 
@@ -104,7 +113,7 @@ class Escape:
         self.patience = PATIENCE_S * 1e9 / briefing.period_ns
         self.waited = 0
         self.target, self.tries, self.blocked = NOTHING, 0, 0
-        self.lately: dict[int, tuple[float, float, float, tuple[float, float]]] = {}
+        self.lately: dict[int, Glimpse] = {}
         self.turn: float | None = None
         self.planned: Pose | None = None
         self.remaining = self.record = math.dist((pose.x, pose.y), self.goal)
@@ -119,6 +128,7 @@ class Escape:
         """See Pathfinder."""
         if math.hypot(pose.x - self.goal_x, pose.y - self.goal_y) <= 0.6 * self.tolerance:
             self.progress = Progress.ARRIVED
+        self.waited += 1
         if self.progress is Progress.DRIVING and self._due(pose):
             self._plan(pose, scan)
         twist = self._twist(pose, scan) if self.progress is Progress.DRIVING else STANDSTILL
@@ -129,7 +139,6 @@ class Escape:
         """Is it time to look and plan anew: a piece driven or turned, the way at its end, or blocked, or
         none of it for long, which happens when the team makes the leader wait."""
         last = self.planned
-        self.waited += 1
         if last is None or self.driver.shielded > 3 or self.waited > self.patience:
             return True
         if self.turn is not None and abs(wrap_angle(self.turn - pose.heading)) < 0.1:
@@ -251,17 +260,15 @@ class Escape:
         Without them one would seem to be farther off than before because the robot turned its back to
         it, and it would turn back, and so on.
         """
-        memory, found = self.openings.memory, {}
-        for number, (x, y, cost, at) in self.lately.items():
-            moved = math.dist(at, (pose.x, pose.y))
+        memory, here, found = self.openings.memory, (pose.x, pose.y), {}
+        for number, ((x, y), cost, seen_from) in self.lately.items():
+            moved = math.dist(seen_from, here)
             same = memory.kind[number] & (PLACE + OPENING) and (x, y) == tuple(memory.xy[number])
             bearing = wrap_angle(elementary.atan2(y - pose.y, x - pose.x) - pose.heading)
             if number not in seeds and same and moved < self.openings.spacing and abs(bearing) > ASIDE:
                 found[number] = cost + moved
-        here = (pose.x, pose.y)
-        self.lately = {n: self.lately[n] for n in found} | {
-            n: (*memory.xy[n].tolist(), cost, here) for n, cost in seeds.items() if n != GOAL
-        }
+        now = {n: Glimpse(tuple(memory.xy[n].tolist()), cost, here) for n, cost in seeds.items()}
+        self.lately = {n: self.lately[n] for n in found} | now
         return found
 
     def _go(self, pose: Pose, roadmap: RoadMap, chain: list[int], reach: Reach) -> bool:

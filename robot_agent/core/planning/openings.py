@@ -24,7 +24,7 @@ class Edge(NamedTuple):
     """The points of a road map that lie beside something unseen: `beside`, ascending.
 
     Of all points of the road map: costs, of the way there [m]; outward, direction to the unseen [rad].
-    offset: from the robot to the present place [m].
+    offset: from the robot to the present place [m]. noted: which openings came to which point.
     """
 
     roadmap: RoadMap
@@ -32,6 +32,7 @@ class Edge(NamedTuple):
     outward: FloatArray
     beside: Indices
     offset: float
+    noted: dict[int, int]
 
 
 MOST_MOVES = 8
@@ -77,7 +78,6 @@ class Openings:
         self.spacing = 4.0 * inflation
         self.rim = 3.0 * inflation
         self.place = NOTHING
-        self.noted: dict[int, int] = {}
 
     @property
     def nbytes(self) -> int:
@@ -127,13 +127,12 @@ class Openings:
         beside[0] = False
         outward = outward[near_rim.argmin(axis=1)] if len(rim) else np.zeros(len(roadmap.points))
         offset = math.dist(view.origin, self.memory.xy[self.place])
-        edge = Edge(roadmap, costs, outward, np.flatnonzero(np.isfinite(costs) & beside), offset)
-        self.noted = {}
+        edge = Edge(roadmap, costs, outward, np.flatnonzero(np.isfinite(costs) & beside), offset, {})
         self._refute(view, rim, known, edge)
         self._draw_on(edge, record)
         self._remember(view, edge, record)
         self._look_beyond(view)
-        return self.noted
+        return edge.noted
 
     def _remember(self, view: View, edge: Edge, record: float) -> None:
         """New openings, the most promising first."""
@@ -158,7 +157,7 @@ class Openings:
         self.walled[number] = False
         self.memory.join(self.place, number, float(edge.costs[point]) + edge.offset)
         self.gaze[number] = edge.outward[point]
-        self.noted[number] = point
+        edge.noted[number] = point
 
     def _look_beyond(self, view: View) -> None:
         """Note which openings in view have a wall right before them towards the goal.
