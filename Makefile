@@ -36,7 +36,7 @@ live: setup
 campaign: setup  ## what takes minutes and stays out of CI
 	$(BIN)/pytest -q -m campaign
 	for seed in 1 2 3 4 5 6 7 8 9 10; do \
-	    ONEHOP_SEQUENCES=1000 $(BIN)/pytest -q --hypothesis-seed=$$seed tests/agent/test_team_machine.py \
+	    ONEHOP_SEQUENCES=1000 $(BIN)/pytest -q --hypothesis-seed=$$seed tests/agent/team/test_team_machine.py \
 	    || exit 1; done
 
 bench: setup

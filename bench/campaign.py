@@ -19,10 +19,10 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from onehop import scenario_file
 from onehop.contracts.messages import Action
 from onehop.contracts.randomness import generator
-from onehop.drive import inline
+from onehop.drivers import inline
+from onehop.scenario import scenario_file
 from world_server.core.world import World
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"

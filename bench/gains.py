@@ -21,10 +21,10 @@ import statistics
 from pathlib import Path
 from typing import Any
 
-from onehop import scenario_file
 from onehop.contracts.messages import Action
 from onehop.contracts.team import Mode
-from onehop.drive import inline
+from onehop.drivers import inline
+from onehop.scenario import scenario_file
 from world_server.core.world import World
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"

@@ -13,10 +13,11 @@ from collections.abc import Callable
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts.arrays import FloatArray
 from onehop.contracts.sections import MapSection, Point, RobotSection
+from onehop.maps.map_file import load_map
+from onehop.maps.walls import WallMap
 from world_server.core.laser import Laser
-from world_server.core.mapfile import load_map
-from world_server.core.walls import FloatArray, WallMap
 
 BODY = RobotSection()
 SIDE = 100.0

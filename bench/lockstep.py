@@ -13,11 +13,11 @@ import tempfile
 import time
 from pathlib import Path
 
-from onehop import scenario_file
 from onehop.contracts import topics
-from onehop.drive.bus import Bus, make_credentials, open_client, open_router
 from onehop.mission import launcher
 from onehop.mission.processes import free_endpoint
+from onehop.node.bus import Bus, make_credentials, open_client, open_router
+from onehop.scenario import scenario_file
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "map1.toml"
 TICKS = 2000
@@ -40,7 +40,7 @@ def bare(robots: int) -> float:
     words = make_credentials(names)
     endpoint = free_endpoint()
     spawn = multiprocessing.get_context("spawn")
-    parts = [(names[0], topics.AIR, bytes(60 * robots))]
+    parts = [(names[0], topics.CARRIED, bytes(60 * robots))]
     parts += [(name, topics.OUT, ACTION) for name in names[1:]]
     children = [
         spawn.Process(target=answer, args=(endpoint, name, words[name], *rest), daemon=True)

@@ -16,12 +16,12 @@ import time
 from pathlib import Path
 from typing import Any
 
-from onehop import scenario_file
-from onehop.drive import inline
-from onehop.drive.journal import Journal
-from onehop.drive.log_writer import LogWriter
+from onehop.drivers import inline
 from onehop.mission import launcher
-from onehop.scenario_file import Bundle
+from onehop.scenario import scenario_file
+from onehop.scenario.scenario_file import Bundle
+from onehop.wire.journal import Journal
+from onehop.wire.log_writer import LogWriter
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "map1.toml"
 ROUNDS = 3

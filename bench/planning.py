@@ -15,17 +15,18 @@ from typing import Any
 
 import numpy as np
 
+from onehop.contracts.beams import Beams
+from onehop.contracts.briefings import robot_briefing
 from onehop.contracts.geometry import Pose
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import Scenario, robot_briefing
+from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import GoalSection, MapSection, RobotSection
+from onehop.maps.map_file import load_map
 from robot_agent.core.planning import make_pathfinder
 from robot_agent.core.planning.roadmap import RoadMap
 from robot_agent.core.planning.sampling import sample_fan
 from robot_agent.core.planning.view import NO_POINTS, View
-from robot_agent.core.scan import Fan
 from world_server.core.laser import Laser
-from world_server.core.mapfile import load_map
 
 BLOCKS = tuple(
     ((x, y), (x + 1.5, y), (x + 1.5, y + 2.0), (x, y + 2.0))
@@ -38,14 +39,14 @@ def scene() -> tuple[View, RobotSection]:
     body = RobotSection()
     walls = load_map(MapSection(width=30.0, height=30.0, obstacles=BLOCKS), {})
     scan = Laser(walls, body).scans(np.array([(10.0, 11.0, 0.0)]), np.zeros(1, dtype=np.int32))[0]
-    return View(Fan(body), Pose(10.0, 11.0, 0.0), scan, 0.05), body
+    return View(Beams(body), Pose(10.0, 11.0, 0.0), scan, 0.05), body
 
 
 def local_plan(rounds: int) -> dict[str, float]:
     """CPU time of view, 200 samples, road map and A* [ms]."""
     view, body = scene()
     scan = np.where(view.solid, view.sight, np.inf).astype(np.float32)
-    fan, random, took = Fan(body), generator(1, "bench"), []
+    fan, random, took = Beams(body), generator(1, "bench"), []
     for _ in range(rounds):
         began = time.process_time()
         look = View(fan, view.pose, scan, 0.05)

@@ -11,10 +11,10 @@ from collections.abc import Callable
 
 from msgspec import structs
 
+from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.messages import Fate, Offer, Presence, Transmission, Truth
+from onehop.contracts.messages import DeliveryStatus, Presence, Transmission, TransmitRequest, Truth
 from onehop.contracts.radio_section import RadioSection
-from onehop.contracts.scenario import RadioBriefing
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.propagation import link_budget
 from radio_proxy.core.radio import Radio
@@ -49,13 +49,13 @@ class Mission:
         self.heard: dict[int, int] = {}
 
     def step(self, outboxes: Outboxes) -> None:
-        offers = tuple(Offer(i, 1.0, 50.0, outboxes.get(i, ())) for i in self.robots)
+        offers = tuple(TransmitRequest(i, 1.0, 50.0, outboxes.get(i, ())) for i in self.robots)
         truth = Truth(self.tick, self.tick * PERIOD, self.present, offers, (), (), (), ())
         begin = time.process_time()
         carriage = self.radio.carry(truth)
         self.seconds.append(time.process_time() - begin)
         self.tick += 1
-        self.delivered += sum(v.fate is Fate.DELIVERED for v in carriage.ether.verdicts)
+        self.delivered += sum(v.status is DeliveryStatus.DELIVERED for v in carriage.record.verdicts)
         self.heard = {i: len(inbox.receptions) for i, inbox in carriage.inboxes.items()}
 
     def figures(self) -> dict[str, float]:

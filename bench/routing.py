@@ -16,12 +16,12 @@ import statistics
 import sys
 from pathlib import Path
 
-from onehop import scenario_file
 from onehop.contracts import topics
-from onehop.contracts.messages import Ether, Fate
-from onehop.drive import inline
-from onehop.drive.codec import decode
-from onehop.drive.journal import Journal
+from onehop.contracts.messages import DeliveryStatus, RadioRecord
+from onehop.drivers import inline
+from onehop.scenario import scenario_file
+from onehop.wire.codec import decode
+from onehop.wire.journal import Journal
 
 SCENARIOS = Path(__file__).parents[1] / "scenarios"
 PROTOCOLS = ("mrsr", "mrdv")
@@ -60,14 +60,16 @@ MISSIONS: dict[str, tuple[str, ...]] = {
 
 def mission(scenario: str, settings: tuple[str, ...], routing: str, seed: int) -> dict[str, float]:
     """Run one and take its measures."""
-    ethers: list[Ether] = []
-    journal = Journal(lambda _, record: ethers.append(decode(Ether, dict(record)[topics.ETHER])))
+    ethers: list[RadioRecord] = []
+    journal = Journal(
+        lambda _, record: ethers.append(decode(RadioRecord, dict(record)[topics.RADIO_RECORD]))
+    )
     every = [f"seed={seed}", "clock.limit_s=120", f'radio.routing="{routing}"', *settings]
     inline.run(scenario_file.load(SCENARIOS / scenario, every), journal)
     nexts = [
-        verdict for ether in ethers for verdict in ether.verdicts if verdict.msdu_bytes == NEXT_BYTES
+        verdict for record in ethers for verdict in record.verdicts if verdict.msdu_bytes == NEXT_BYTES
     ]
-    arrived = [verdict for verdict in nexts if verdict.fate is Fate.DELIVERED]
+    arrived = [verdict for verdict in nexts if verdict.status is DeliveryStatus.DELIVERED]
     hops = [len(verdict.path) - 1 for verdict in arrived]
     taken = [verdict.arrival_ns - verdict.service_start_ns for verdict in arrived]
     moving = [time - verdict.discovery_ns for time, verdict in zip(taken, arrived, strict=True)]

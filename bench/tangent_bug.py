@@ -11,7 +11,7 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from world_server.core.walls import BoolArray, FloatArray
+from onehop.contracts.arrays import BoolArray, FloatArray
 
 IntArray = npt.NDArray[np.int64]
 

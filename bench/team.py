@@ -16,10 +16,11 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 
+from onehop.contracts.arrays import Ranges
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.messages import Percept, Ranges
+from onehop.contracts.messages import Percept
 from onehop.contracts.sections import TeamSection
-from tests.agent.team_net import NOTHING_NEAR, PERIOD_MS, TeamNet
+from tests.agent.team.team_net import NOTHING_NEAR, PERIOD_MS, TeamNet
 
 ROUNDS, STEPS = 300, 20
 

@@ -23,8 +23,8 @@ from onehop.contracts.sections import (
     Point,
     StartSection,
 )
-from onehop.drive.solo import solo
-from world_server.core.mapfile import load_map
+from onehop.drivers.trial import run_trial
+from onehop.maps.map_file import load_map
 
 BUDGET_S = {"corner": 600.0, "room": 140.0}
 """Simulated time of a run [s]. In the room: a little more than the slowest `escape` takes. `modified` is
@@ -63,7 +63,7 @@ def scenario_of(place: str, kind: Any, seed: int) -> Scenario:
 
 def run(place: str, kind: str, seed: int) -> Line:
     scenario = scenario_of(place, kind, seed)
-    outcome = solo(scenario, load_map(scenario.map, {}))
+    outcome = run_trial(scenario, load_map(scenario.map, {}))
     return {
         "place": place,
         "kind": kind,

@@ -28,9 +28,9 @@ from onehop.contracts.sections import (
     RobotSection,
     StartSection,
 )
-from onehop.drive.solo import solo
-from world_server.core.mapfile import load_map, map_files
-from world_server.core.walls import WallMap
+from onehop.drivers.trial import run_trial
+from onehop.maps.map_file import load_map, map_files
+from onehop.maps.walls import WallMap
 
 SMALL_MAPS = {
     "depot": (PlannerSection(inflation=0.25), RobotSection(radius=0.15, leader_speed=0.5)),
@@ -92,7 +92,7 @@ def drive(scenario: Scenario, walls: WallMap, known: KnownMap, cells: tuple[int,
         goal=GoalSection(*goal),
         clock=ClockSection(limit_s=LIMIT_S),
     )
-    run = solo(mission, walls)
+    run = run_trial(mission, walls)
     bug = tangent_bug(known.free, c0, r0, c1, r1, scenario.robot.laser_range / known.cell)
     return {
         "start": start,

@@ -11,33 +11,33 @@ from pathlib import Path
 from typing import Any
 
 from onehop.contracts import topics
+from onehop.contracts.briefings import LogBriefing
 from onehop.contracts.messages import End
-from onehop.drive import node
-from onehop.drive.briefings import LogBriefing
-from onehop.drive.bus import GONE, Bus
-from onehop.drive.codec import decode
-from onehop.drive.journal import Journal, WireMessage
-from onehop.drive.log_writer import LogWriter
-from onehop.drive.record import unpack_records
-from onehop.mission.summary import summarize
-from onehop.scenario_file import bundle_from_json
+from onehop.node import startup
+from onehop.node.bus import GONE, Bus
+from onehop.scenario.scenario_file import bundle_from_json
+from onehop.wire.batch import unpack_ticks
+from onehop.wire.codec import decode
+from onehop.wire.journal import Journal, WireMessage
+from onehop.wire.log_writer import LogWriter
+from onehop.wire.summary import summarize
 
 LAST_WORDS_S = 2.0
 """How long to wait for the last records after the end of the mission was announced."""
 
 
 def main() -> int:
-    parser = node.arguments("onehop.recorder", "Writes the log of a mission.")
-    node.add_connect(parser)
+    parser = startup.arguments("onehop.recorder", "Writes the log of a mission.")
+    startup.add_connect(parser)
     parser.add_argument(
         "--out", type=Path, required=True, help="folder for mission.mcap and summary.json"
     )
     parser.add_argument("--no-file", action="store_true", help="make the digest, write no log")
     options = parser.parse_args()
-    node.start(options)
-    with node.connect(options, topics.RECORDER) as bus:
+    startup.start(options)
+    with startup.connect(options, topics.RECORDER) as bus:
         bus.watch(topics.WORLD)
-        briefing = decode(LogBriefing, node.briefing(bus, topics.RECORDER))
+        briefing = decode(LogBriefing, startup.briefing(bus, topics.RECORDER))
         options.out.mkdir(parents=True, exist_ok=True)
         return _Recorder(bus, briefing, options.out, not options.no_file).serve()
 
@@ -78,8 +78,8 @@ class _Recorder:
     def _take(self, what: str, data: bytes) -> None:
         if what == topics.END:
             self._end = decode(End, data)
-        elif what == topics.RECORD:
-            for record in unpack_records(data):
+        elif what == topics.TICKS:
+            for record in unpack_ticks(data):
                 self._journal.add(*record)
             if self._log is not None:
                 self._log.flush()
@@ -101,4 +101,4 @@ class _Recorder:
 
 
 if __name__ == "__main__":
-    node.main(main)
+    startup.main(main)

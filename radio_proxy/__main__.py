@@ -1,4 +1,4 @@
-from onehop.drive import node
+from onehop.node import startup
 from radio_proxy.process import main
 
-node.main(main)
+startup.main(main)

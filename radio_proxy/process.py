@@ -1,30 +1,30 @@
 """The shell of the radio: hear the truth of a tick, carry what was offered, put all inboxes."""
 
 from onehop.contracts import topics
+from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.messages import Truth
-from onehop.contracts.scenario import RadioBriefing
-from onehop.drive import node
-from onehop.drive.bus import GONE, Bus
-from onehop.drive.codec import decode, encode
-from onehop.drive.journal import WireMessage
-from onehop.drive.record import pack_record
+from onehop.node import startup
+from onehop.node.bus import GONE, Bus
+from onehop.wire.batch import pack_tick
+from onehop.wire.codec import decode, encode
+from onehop.wire.journal import WireMessage
 from radio_proxy.core.radio import Radio
 
 
 def main() -> int:
-    parser = node.arguments("radio_proxy", "The radio between the robots of a mission.")
-    node.add_connect(parser)
+    parser = startup.arguments("radio_proxy", "The radio between the robots of a mission.")
+    startup.add_connect(parser)
     options = parser.parse_args()
-    node.start(options)
-    with node.connect(options, topics.RADIO) as bus:
+    startup.start(options)
+    with startup.connect(options, topics.RADIO) as bus:
         bus.watch(topics.WORLD)
-        radio = Radio(decode(RadioBriefing, node.briefing(bus, topics.RADIO)))
-        node.calm_garbage_collector()
+        radio = Radio(decode(RadioBriefing, startup.briefing(bus, topics.RADIO)))
+        startup.calm_garbage_collector()
         return _serve(bus, radio)
 
 
 def _serve(bus: Bus, radio: Radio) -> int:
-    put = bus.publisher(topics.by(topics.RADIO, topics.AIR))
+    put = bus.publisher(topics.by(topics.RADIO, topics.CARRIED))
     bus.announce(topics.RADIO)
     while True:
         what, data = bus.receive()
@@ -34,8 +34,8 @@ def _serve(bus: Bus, radio: Radio) -> int:
             messages: list[WireMessage] = [
                 (topics.rx(i), encode(inbox)) for i, inbox in carried.inboxes.items()
             ]
-            messages.append((topics.ETHER, encode(carried.ether)))
-            put(pack_record(truth.tick, messages))
+            messages.append((topics.RADIO_RECORD, encode(carried.record)))
+            put(pack_tick(truth.tick, messages))
         elif what == topics.END:
             return 0
         elif data == GONE:

@@ -4,26 +4,26 @@ import os
 import signal
 
 from onehop.contracts import topics
+from onehop.contracts.briefings import Briefing
 from onehop.contracts.messages import Inbox, Observation, percept
-from onehop.contracts.scenario import Briefing
-from onehop.drive import node
-from onehop.drive.bus import GONE, Bus
-from onehop.drive.codec import decode, encode
-from onehop.drive.record import unpack_record
+from onehop.node import startup
+from onehop.node.bus import GONE, Bus
+from onehop.wire.batch import unpack_tick
+from onehop.wire.codec import decode, encode
 from robot_agent.core.robot import Robot
 
 
 def main() -> int:
-    parser = node.arguments("robot_agent", "One robot of a mission.")
-    node.add_connect(parser)
+    parser = startup.arguments("robot_agent", "One robot of a mission.")
+    startup.add_connect(parser)
     parser.add_argument("--id", type=int, required=True, help="id of the robot, from 1")
     options = parser.parse_args()
-    node.start(options)
+    startup.start(options)
     name = topics.robot_name(options.id)
-    with node.connect(options, name) as bus:
+    with startup.connect(options, name) as bus:
         bus.watch(topics.WORLD)
-        robot = Robot(decode(Briefing, node.briefing(bus, name)))
-        node.calm_garbage_collector()
+        robot = Robot(decode(Briefing, startup.briefing(bus, name)))
+        startup.calm_garbage_collector()
         return _serve(bus, robot, name)
 
 
@@ -33,9 +33,9 @@ def _serve(bus: Bus, robot: Robot, name: str) -> int:
     while True:
         what, data = bus.receive()
         if what == topics.PERCEPT:
-            _, ((_, seen), (_, heard)) = unpack_record(data)
+            _, ((_, seen), (_, heard)) = unpack_tick(data)
             put(encode(robot.step(percept(decode(Observation, seen), decode(Inbox, heard)))))
-        elif what == topics.FATE:
+        elif what == topics.KILL:
             os.kill(os.getpid(), signal.SIGKILL)
         elif what == topics.END:
             return 0

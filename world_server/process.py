@@ -12,19 +12,18 @@ import time
 from dataclasses import dataclass
 from pathlib import Path
 
-from onehop import scenario_file
 from onehop.contracts import topics
+from onehop.contracts.briefings import LogBriefing, RadioBriefing, radio_briefing, robot_briefing
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import Action, End, Outcome, Progress, RobotProgress, Truth
-from onehop.contracts.scenario import RadioBriefing, robot_briefing
-from onehop.drive import node
-from onehop.drive.briefings import LogBriefing, radio_briefing
-from onehop.drive.bus import ALIVE, Bus, open_router
-from onehop.drive.codec import decode, encode
-from onehop.drive.journal import WireMessage
-from onehop.drive.record import Record, pack_record, pack_records, unpack_record
-from onehop.scenario_file import Bundle
-from world_server.core.mapfile import load_map
+from onehop.maps.map_file import load_map
+from onehop.node import startup
+from onehop.node.bus import ALIVE, Bus, open_router
+from onehop.scenario import scenario_file
+from onehop.scenario.scenario_file import Bundle
+from onehop.wire.batch import TickMessages, pack_tick, pack_ticks, unpack_tick
+from onehop.wire.codec import decode, encode
+from onehop.wire.journal import WireMessage
 from world_server.core.world import World
 
 RECORD_TICKS = 3
@@ -33,7 +32,7 @@ RECORD_TICKS = 3
 RECORD_WINDOW = 5
 """Ticks that the world may be ahead of the file: what a kill -9 of the recorder can cost at most."""
 
-_AIR = f"{topics.RADIO}/{topics.AIR}"
+_AIR = f"{topics.RADIO}/{topics.CARRIED}"
 _RECORDED = f"{topics.RECORDER}/{topics.RECORDED}"
 _STOPS = (f"{topics.OPERATOR}/{topics.CONTROL}", f"{topics.WORLD}/{topics.CONTROL}")
 _ALIVE = f"{topics.WORLD}/{topics.alive('')}"
@@ -49,7 +48,7 @@ RESTART_S = 20.0
 
 def main() -> int:
     options = _options()
-    node.start(options)
+    startup.start(options)
     bundle = scenario_file.load(
         options.scenario,
         options.set,
@@ -62,12 +61,14 @@ def main() -> int:
     with scenario_file.in_file(options.scenario):
         world = World(bundle.scenario, walls)
     world.observe()  # compiles or loads the laser kernel before anyone waits for it
-    with open_router(options.mission, options.listen, node.credentials()) as bus:
-        return _Host(bus, bundle, world, radio_briefing(bundle.scenario, walls), options.driver).serve()
+    with open_router(options.mission, options.listen, startup.credentials()) as bus:
+        return _Host(
+            bus, bundle, world, radio_briefing(bundle.scenario, walls.segments), options.driver
+        ).serve()
 
 
 def _options() -> argparse.Namespace:
-    parser = node.arguments("world_server", "Map, motion and clock of a mission; its bus router.")
+    parser = startup.arguments("world_server", "Map, motion and clock of a mission; its bus router.")
     parser.add_argument("scenario", type=Path, help="scenario file (.toml)")
     parser.add_argument("--set", action="append", default=[], metavar="KEY=VALUE", help="change a key")
     parser.add_argument("--seed", type=int)
@@ -100,7 +101,7 @@ class _Host:
         self._alive: set[str] = set()
         self._recorded = -1
         self._last_tick = -1
-        self._record: list[Record] = []
+        self._record: list[TickMessages] = []
         self._air: bytes | None = None
         self._actions: dict[int, tuple[Action, bytes]] = {}
         self._awaited: set[int] = set()
@@ -119,8 +120,8 @@ class _Host:
         self._put_percept = {
             i: bus.publisher(to(name, topics.PERCEPT)) for name, i in self._names.items()
         }
-        self._put_fate = {i: bus.publisher(to(name, topics.FATE)) for name, i in self._names.items()}
-        self._put_record = bus.publisher(to(topics.RECORDER, topics.RECORD), express=False)
+        self._put_kill = {i: bus.publisher(to(name, topics.KILL)) for name, i in self._names.items()}
+        self._put_record = bus.publisher(to(topics.RECORDER, topics.TICKS), express=False)
         self._put_progress = bus.publisher(to(topics.OPERATOR, topics.PROGRESS), express=False)
         self._put_restart = bus.publisher(to(topics.OPERATOR, topics.RESTART))
         self._put_end = [bus.publisher(to(name, topics.END)) for name in _TOLD_OF_THE_OUTCOME]
@@ -136,7 +137,7 @@ class _Host:
         started = time.monotonic()
         try:
             self._await_everyone()
-            node.calm_garbage_collector()
+            startup.calm_garbage_collector()
             started = time.monotonic()
             outcome = self._run()
         except _InterruptedError as interruption:
@@ -189,7 +190,7 @@ class _Host:
         heard = dict(air)
         for presence, observation in zip(truth.present, seen, strict=True):
             inbox = topics.rx(presence.robot)
-            percept = pack_record(truth.tick, [observation, (inbox, heard[inbox])])
+            percept = pack_tick(truth.tick, [observation, (inbox, heard[inbox])])
             self._put_percept[presence.robot](percept)
         self._collect(truth)
         done = [(topics.out(i), self._actions[i][1]) for i in sorted(self._actions)]
@@ -205,7 +206,7 @@ class _Host:
         return world.outcome()
 
     def _hand_over_record(self) -> None:
-        self._put_record(pack_records(self._record))
+        self._put_record(pack_ticks(self._record))
         self._record.clear()
 
     def _await_air(self) -> list[WireMessage]:
@@ -217,7 +218,7 @@ class _Host:
             self._hear(deadline)
             if time.monotonic() > deadline:
                 raise _InterruptedError(f"the radio is silent for {self._scenario.clock.silence_s:g} s")
-        tick, messages = unpack_record(self._air)
+        tick, messages = unpack_tick(self._air)
         if tick != self._world.tick:
             raise _InterruptedError(f"the radio answers for tick {tick}, not {self._world.tick}")
         return messages
@@ -298,7 +299,7 @@ class _Host:
         present = {presence.robot for presence in truth.present}
         for departure in truth.departures:
             if departure.robot not in present:
-                self._put_fate[departure.robot](b"")
+                self._put_kill[departure.robot](b"")
         for fault in self._world.due_faults():
             if fault.kind == "restart":
                 for i in sorted(fault.robots):
@@ -307,7 +308,7 @@ class _Host:
     def _restart(self, robot: int) -> None:
         name = topics.robot_name(robot)
         self._incarnations[robot] += 1
-        self._put_fate[robot](b"")
+        self._put_kill[robot](b"")
         self._restarting = robot
         deadline = time.monotonic() + RESTART_S
         while name in self._alive and time.monotonic() < deadline:

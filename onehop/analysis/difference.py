@@ -8,9 +8,9 @@ from onehop.analysis.log import Log
 from onehop.analysis.readable import fields
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
-from onehop.drive.codec import as_map
-from onehop.drive.compare import first_difference
-from onehop.drive.journal import canonical_rank
+from onehop.wire.codec import as_map
+from onehop.wire.difference import first_difference
+from onehop.wire.journal import canonical_rank
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +60,7 @@ Tick = tuple[int, dict[str, bytes]]
 
 def _ticks(log: Log) -> Iterator[Tick]:
     tick, messages = -1, dict[str, bytes]()
-    for number, key, data in log.messages("truth", "ether", "rx/", "obs/", "out/"):
+    for number, key, data in log.messages("truth", "radio", "rx/", "obs/", "out/"):
         if number != tick:
             if messages:
                 yield tick, messages

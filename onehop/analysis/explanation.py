@@ -10,15 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from onehop.analysis.frames import Frame, join
 from onehop.analysis.log import Log
+from onehop.analysis.message_traces import MessageTrace, join
 from onehop.analysis.readable import content_of
 from onehop.analysis.tables import Table
 from onehop.analysis.timeline import departures
 from onehop.contracts.errors import InputError
 from onehop.contracts.messages import Truth
 from onehop.contracts.sections import GainsSection, TeamSection
-from robot_agent.core.messages import Command
+from robot_agent.core.team.team_messages import Command
 
 WINDOW_S = 6.0
 """Messages and events of this long before the moment are told [s]: three periods of Next."""
@@ -53,7 +53,7 @@ class Explanation:
     status: dict[str, Any]
     pose: dict[str, Any]
     next_s: float | None
-    heard: tuple[Frame, ...]
+    heard: tuple[MessageTrace, ...]
     events: tuple[dict[str, Any], ...]
     faults: tuple[str, ...]
     gains: GainsSection
@@ -75,18 +75,18 @@ class Explanation:
             "status": status,
             "pose": self.pose,
             "last_next_s": self.next_s,
-            "frames": [_frame_json(frame) for frame in self.heard],
+            "messages": [_message_json(trace) for trace in self.heard],
             "events": list(self.events),
             "faults": list(self.faults),
         }
 
 
-def _frame_json(frame: Frame) -> dict[str, Any]:
-    plain = asdict(frame)
+def _message_json(trace: MessageTrace) -> dict[str, Any]:
+    plain = asdict(trace)
     del plain["message"]
-    plain["says"] = content_of(frame.message)
-    plain["path"] = list(frame.path)
-    plain["arrival_s"] = None if math.isnan(frame.arrival_s) else frame.arrival_s
+    plain["says"] = content_of(trace.message)
+    plain["path"] = list(trace.path)
+    plain["arrival_s"] = None if math.isnan(trace.arrival_s) else trace.arrival_s
     return plain
 
 
@@ -97,7 +97,7 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
             f"--robot {robot}", "is not in the team", f"one of {', '.join(map(str, log.robots))}"
         )
     tables = log.tables("status", "notes", robots=[robot], end_s=at_s)
-    ground = log.tables("poses", "departures", "verdicts", "offers", end_s=at_s)
+    ground = log.tables("poses", "departures", "verdicts", "transmit_requests", end_s=at_s)
     status, poses = tables["status"], ground["poses"].of(robot)
     if at_s < 0 or not len(status):
         raise InputError(f"--at {at_s:g}", "the robot has not acted by then", "a later time [s]")
@@ -108,7 +108,11 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         raise InputError(
             f"--at {at_s:g}", "the log ends before that", f"at most {status['time_s'][-1]:g} s"
         )
-    own = [frame for frame in join(ground["verdicts"], ground["offers"]) if _concerns(frame, robot)]
+    own = [
+        frame
+        for frame in join(ground["verdicts"], ground["transmit_requests"])
+        if _concerns(frame, robot)
+    ]
     changes = [data for kind, data in _notes(tables["notes"]) if kind == "mode"]
     last_s = float(status["time_s"][-1])
     return Explanation(
@@ -132,7 +136,7 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
     )
 
 
-def _concerns(frame: Frame, robot: int) -> bool:
+def _concerns(frame: MessageTrace, robot: int) -> bool:
     return robot in (frame.receiver, frame.source)
 
 
@@ -176,7 +180,7 @@ def _row(table: Table) -> dict[str, Any]:
     }
 
 
-def _last_command(own: list[Frame], robot: int, leader: int) -> float | None:
+def _last_command(own: list[MessageTrace], robot: int, leader: int) -> float | None:
     arrivals = [
         frame.arrival_s
         for frame in own

@@ -10,9 +10,9 @@ from matplotlib.patches import Circle
 
 from onehop.analysis.palette import BAD, INK, WALL, WALL_EDGE
 from onehop.contracts.scenario import Scenario
-from onehop.scenario_file import Bundle
-from world_server.core.mapfile import load_map
-from world_server.core.walls import WallMap
+from onehop.maps.map_file import load_map
+from onehop.maps.walls import WallMap
+from onehop.scenario.scenario_file import Bundle
 
 _RASTER = 700
 """Points along the longer side at which a grid map is asked what is filled."""

@@ -18,13 +18,13 @@ from typing import Any, TypeVar
 from onehop.analysis.tables import TABLES, Table, build
 from onehop.contracts import topics
 from onehop.contracts.errors import InputError
-from onehop.contracts.messages import Action, Ether, Inbox, Observation, Truth
+from onehop.contracts.messages import Action, Inbox, Observation, RadioRecord, Truth
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.values import Wire
-from onehop.drive.codec import decode
-from onehop.drive.log_reader import LogFile
-from onehop.drive.selection import Selected, one_of, select
-from onehop.scenario_file import Bundle
+from onehop.scenario.scenario_file import Bundle
+from onehop.wire.codec import decode
+from onehop.wire.log_reader import LogFile
+from onehop.wire.selection import Selected, one_of, select
 
 M = TypeVar("M", bound=Wire)
 
@@ -67,9 +67,11 @@ class Log:
         """(tick, ground truth)."""
         return self._typed(Truth, topics.TRUTH, start_s, end_s)
 
-    def ethers(self, start_s: float = 0.0, end_s: float | None = None) -> Iterator[tuple[int, Ether]]:
+    def radio_records(
+        self, start_s: float = 0.0, end_s: float | None = None
+    ) -> Iterator[tuple[int, RadioRecord]]:
         """(tick, what the radio did)."""
-        return self._typed(Ether, topics.ETHER, start_s, end_s)
+        return self._typed(RadioRecord, topics.RADIO_RECORD, start_s, end_s)
 
     def observations(
         self, robot: int, start_s: float = 0.0, end_s: float | None = None

@@ -7,15 +7,15 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 
-from onehop.drive.solo import Solo
-from robot_agent.core.scan import FloatArray
-from world_server.core.walls import WallMap
+from onehop.contracts.arrays import FloatArray
+from onehop.drivers.trial import Trial
+from onehop.maps.walls import WallMap
 
 _DPI = 110
 
 
 def plan_figure(
-    outcome: Solo, walls: WallMap, goal: tuple[float, float], shortest: FloatArray | None
+    outcome: Trial, walls: WallMap, goal: tuple[float, float], shortest: FloatArray | None
 ) -> bytes:
     """The figure as PNG. shortest: (n, 2) way on the known map [m], or None to leave it out."""
     xmin, ymin, xmax, ymax = walls.bounds
@@ -48,7 +48,7 @@ def plan_figure(
     return picture.getvalue()
 
 
-def _road_maps(axes: Axes, outcome: Solo) -> None:
+def _road_maps(axes: Axes, outcome: Trial) -> None:
     edges = [survey.roadmap.edges.reshape(-1, 2, 2) for survey in outcome.surveys]
     samples = [survey.samples for survey in outcome.surveys]
     if not edges:
@@ -59,7 +59,7 @@ def _road_maps(axes: Axes, outcome: Solo) -> None:
     axes.plot(*np.concatenate(samples).T, ",", color="#9ca3af", alpha=0.6, label="fan samples")
 
 
-def _virtual_goals(axes: Axes, outcome: Solo) -> None:
+def _virtual_goals(axes: Axes, outcome: Trial) -> None:
     ends = [(survey.way[-1], survey.backtrack) for survey in outcome.surveys if len(survey.way)]
     for back, colour, label in ((False, "#f59e0b", "virtual goal"), (True, "#a21caf", "step back")):
         points = np.array([end for end, backtrack in ends if backtrack is back]).reshape(-1, 2)

@@ -7,14 +7,23 @@ import msgpack
 import numpy as np
 
 from onehop.contracts.errors import DecodeError
-from onehop.drive.codec import as_map
-from robot_agent.core.messages import Ack, Beacon, Command, Join, Message, Order, Phase, decode
+from onehop.wire.codec import as_map
+from robot_agent.core.team.team_messages import (
+    Ack,
+    Beacon,
+    Command,
+    CommandKind,
+    Join,
+    MissionPhase,
+    TeamMessage,
+    decode,
+)
 
 _ORDERS = {
-    Order.NEXT: "Next",
-    Order.LOST_FOLLOWER: "Lost_Follower",
-    Order.NARROW: "Narrow",
-    Order.MAKE_ROOM: "Make_Room",
+    CommandKind.NEXT: "Next",
+    CommandKind.LOST_FOLLOWER: "Lost_Follower",
+    CommandKind.NARROW: "Narrow",
+    CommandKind.MAKE_ROOM: "Make_Room",
 }
 
 
@@ -43,7 +52,7 @@ def _opened_field(key: str, value: Any) -> Any:
     return _opened(value)
 
 
-def opened(payload: bytes) -> Message | None:
+def opened(payload: bytes) -> TeamMessage | None:
     """The team message in a payload, None if it is none."""
     try:
         return decode(payload)
@@ -51,16 +60,16 @@ def opened(payload: bytes) -> Message | None:
         return None
 
 
-def kind_of(message: Message | None) -> str:
+def kind_of(message: TeamMessage | None) -> str:
     """Name of a team message as the thesis has it: Setup, Next, Narrow, Lost_Follower, Ack, ..."""
     if isinstance(message, Command):
-        if message.order is Order.NEXT and message.phase is Phase.SETUP:
+        if message.order is CommandKind.NEXT and message.phase is MissionPhase.SETUP:
             return "Setup"
         return _ORDERS[message.order]
     return "garbled" if message is None else type(message).__name__
 
 
-def content_of(message: Message | None) -> str:
+def content_of(message: TeamMessage | None) -> str:
     """What a team message says, in a few words."""
     if isinstance(message, Command):
         roster = message.roster
@@ -76,7 +85,7 @@ def content_of(message: Message | None) -> str:
     return ""
 
 
-def _plain(message: Message) -> Mapping[str, Any]:
+def _plain(message: TeamMessage) -> Mapping[str, Any]:
     plain: Mapping[str, Any] = as_map(message)
     return plain
 

@@ -19,7 +19,7 @@ from zstandard import ZstdError
 
 from onehop.analysis.copying import LogCopy
 from onehop.contracts import topics
-from onehop.drive.log_reader import LogFile
+from onehop.wire.log_reader import LogFile
 
 _WIRE = topics.wire("")
 
@@ -98,7 +98,7 @@ class _Rescue:
 
     def _is_whole(self) -> bool:
         data = {self._copy.keys[m.channel_id].removeprefix(_WIRE): m.data for m in self._pending}
-        if topics.TRUTH not in data or topics.ETHER not in data:
+        if topics.TRUTH not in data or topics.RADIO_RECORD not in data:
             return False
         robots = [one["robot"] for one in msgpack.unpackb(data[topics.TRUTH])["present"]]
         owed = (key(robot) for robot in robots for key in (topics.rx, topics.obs, topics.out))

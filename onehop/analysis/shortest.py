@@ -12,8 +12,9 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts.arrays import BoolArray, FloatArray
 from onehop.contracts.sections import Point
-from world_server.core.walls import BoolArray, FloatArray, WallMap
+from onehop.maps.walls import WallMap
 
 _STEPS = np.array(
     (

@@ -12,7 +12,7 @@ import msgpack
 import numpy as np
 import numpy.typing as npt
 
-from onehop.drive.selection import Selected
+from onehop.wire.selection import Selected
 
 Column = npt.NDArray[Any]
 Row = tuple[Any, ...]
@@ -65,18 +65,18 @@ def _notes(action: dict[str, Any], robot: int) -> Iterator[Row]:
         yield robot, note["kind"], note["data"]
 
 
-def _verdicts(ether: dict[str, Any], _: int) -> Iterator[Row]:
-    for one in ether["verdicts"]:
+def _verdicts(record: dict[str, Any], _: int) -> Iterator[Row]:
+    for one in record["verdicts"]:
         yield (
-            one["source"], one["message"], one["destination"], one["receiver"], one["fate"],
+            one["source"], one["message"], one["destination"], one["receiver"], one["status"],
             one["msdu_bytes"], tuple(one["path"]), sum(one["attempts"]), one["offered_ns"] / 1e9,
             one["service_start_ns"] / 1e9, one["arrival_ns"] / 1e9 if one["arrival_ns"] >= 0 else np.nan,
             one["discovery_ns"] / 1e9, one["queueing_ns"] / 1e9, one["snr_db"], one["bit_error_rate"],
         )  # fmt: skip
 
 
-def _control(ether: dict[str, Any], _: int) -> Iterator[Row]:
-    yield from sorted(ether["control_bytes"].items())
+def _control(record: dict[str, Any], _: int) -> Iterator[Row]:
+    yield from sorted(record["control_bytes"].items())
 
 
 def _receptions(inbox: dict[str, Any], robot: int) -> Iterator[Row]:
@@ -88,7 +88,7 @@ def _receptions(inbox: dict[str, Any], robot: int) -> Iterator[Row]:
 
 
 def _offers(truth: dict[str, Any], _: int) -> Iterator[Row]:
-    for offer in truth["offers"]:
+    for offer in truth["transmit_requests"]:
         for sent in offer["outbox"]:
             yield offer["robot"], sent["destination"], sent["msdu_bytes"], sent["payload"]
 
@@ -123,7 +123,7 @@ _INTEGERS = frozenset(
         "msdu_bytes", "attempts", "hops", "other", "bytes",
     }
 )  # fmt: skip
-_WORDS = frozenset({"mode", "shape", "kind", "fate", "why"})
+_WORDS = frozenset({"mode", "shape", "kind", "status", "why"})
 _OBJECTS = frozenset({"members", "path", "payload", "data", "side_a", "side_b"})
 
 TABLES: dict[str, tuple[str, Rows, tuple[str, ...]]] = {
@@ -137,18 +137,18 @@ TABLES: dict[str, tuple[str, Rows, tuple[str, ...]]] = {
     ),
     "notes": ("out/", _notes, ("robot", "kind", "data")),
     "verdicts": (
-        "ether", _verdicts,
-        ("source", "message", "destination", "receiver", "fate", "msdu_bytes", "path", "attempts",
+        "radio", _verdicts,
+        ("source", "message", "destination", "receiver", "status", "msdu_bytes", "path", "attempts",
          "offered_s", "service_start_s", "arrival_s", "discovery_s", "queueing_s", "snr_db",
          "bit_error_rate"),
     ),
-    "control": ("ether", _control, ("kind", "bytes")),
+    "control": ("radio", _control, ("kind", "bytes")),
     "receptions": (
         "rx/", _receptions,
         ("robot", "source", "service_start_s", "arrival_s", "hops", "attempts", "snr_db",
          "bit_error_rate", "msdu_bytes", "payload"),
     ),
-    "offers": ("truth", _offers, ("robot", "destination", "msdu_bytes", "payload")),
+    "transmit_requests": ("truth", _offers, ("robot", "destination", "msdu_bytes", "payload")),
     "contacts": ("truth", _contacts, ("robot", "other", "x", "y")),
     "departures": ("truth", _departures, ("robot", "why")),
     "cuts": ("truth", _cuts, ("side_a", "side_b")),

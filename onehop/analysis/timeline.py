@@ -5,12 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from onehop.analysis.tables import Column, Table
-from onehop.contracts.messages import Reign
+from onehop.contracts.messages import LeadershipTerm
 from onehop.contracts.sections import FaultSection
 
 
 @dataclass(frozen=True, slots=True)
-class Departure:
+class LastSeen:
     """A robot that left the mission: when, where it was seen last [m], and why."""
 
     robot: int
@@ -29,24 +29,24 @@ class Span:
     what: str
 
 
-def departures(poses: Table, left: Table) -> list[Departure]:
+def departures(poses: Table, left: Table) -> list[LastSeen]:
     """Everyone who left, in order of time."""
     found = []
     for robot, at_s, why in zip(left["robot"], left["time_s"], left["why"], strict=True):
         own = poses.where((poses["robot"] == robot) & (poses["time_s"] < at_s))
         if len(own):
             place = float(own["x"][-1]), float(own["y"][-1])
-            found.append(Departure(int(robot), float(at_s), *place, str(why)))
+            found.append(LastSeen(int(robot), float(at_s), *place, str(why)))
     return found
 
 
-def reigns(status: Table) -> list[Reign]:
+def reigns(status: Table) -> list[LeadershipTerm]:
     """Every roster from the moment its leader began to act on it, in order of time.
 
     The same rule as the referee's (world_server/core/referee.py), so that a torn log has them too.
     """
     ruling = status.where(status["robot"] == status["leader"])
-    found: list[Reign] = []
+    found: list[LeadershipTerm] = []
     before: dict[int, tuple[int, int, tuple[int, ...], str]] = {}
     step = tick_step(status)
     for row in range(len(ruling)):
@@ -55,11 +55,11 @@ def reigns(status: Table) -> list[Reign]:
         last = before.get(robot)
         before[robot] = (tick, *roster)
         if last is None or last[0] < tick - step or last[1:] != roster:
-            found.append(Reign(float(ruling["time_s"][row]), robot, *roster))
+            found.append(LeadershipTerm(float(ruling["time_s"][row]), robot, *roster))
     return found
 
 
-def main_line(status: Table) -> list[Reign]:
+def main_line(status: Table) -> list[LeadershipTerm]:
     """Who led most of the team at each moment: one line of rosters even while the team is split.
 
     The largest roster that its leader acts on counts; of equal ones the one of the lowest leader id.
@@ -68,9 +68,9 @@ def main_line(status: Table) -> list[Reign]:
     size = np.array([len(members) for members in ruling["members"]], dtype=np.int64)
     order = np.lexsort((ruling["robot"], -size, ruling["tick"]))
     _, first = np.unique(ruling["tick"][order], return_index=True)
-    found: list[Reign] = []
+    found: list[LeadershipTerm] = []
     for row in order[first].tolist():
-        reign = Reign(
+        reign = LeadershipTerm(
             float(ruling["time_s"][row]), int(ruling["robot"][row]), int(ruling["epoch"][row]),
             ruling["members"][row], str(ruling["shape"][row]),
         )  # fmt: skip
@@ -79,7 +79,7 @@ def main_line(status: Table) -> list[Reign]:
     return found
 
 
-def _same_rule(reign: Reign) -> tuple[int, int, tuple[int, ...], str]:
+def _same_rule(reign: LeadershipTerm) -> tuple[int, int, tuple[int, ...], str]:
     return reign.leader, reign.epoch, reign.members, reign.shape
 
 

@@ -15,9 +15,9 @@ from onehop.analysis.ground import draw_ground
 from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, INK, robot_colours
 from onehop.analysis.tables import Table, build
-from onehop.analysis.timeline import Departure, departures, describe_fault, main_line
-from onehop.contracts.messages import Reign
-from onehop.drive.log_reader import LogFile
+from onehop.analysis.timeline import LastSeen, departures, describe_fault, main_line
+from onehop.contracts.messages import LeadershipTerm
+from onehop.wire.log_reader import LogFile
 
 SNAPSHOT_S = 20.0
 """Simulated time between two drawings of the formation [s]."""
@@ -164,7 +164,7 @@ def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str]) -> None:
             )  # fmt: skip
 
 
-def _draw_departure(axes: Axes, departure: Departure, colour: str) -> None:
+def _draw_departure(axes: Axes, departure: LastSeen, colour: str) -> None:
     spot = departure.x, departure.y
     axes.plot(*spot, marker="o", markersize=15, color="white", markeredgecolor=colour, zorder=7)
     axes.plot(*spot, marker="x", markersize=9, color=BAD, markeredgewidth=2.8, zorder=7.5)
@@ -174,7 +174,7 @@ def _draw_departure(axes: Axes, departure: Departure, colour: str) -> None:
     )  # fmt: skip
 
 
-def _draw_reigns(axes: Axes, poses: Table, line: list[Reign], colours: dict[int, str]) -> None:
+def _draw_reigns(axes: Axes, poses: Table, line: list[LeadershipTerm], colours: dict[int, str]) -> None:
     """A ring where somebody takes the lead over from another; those that lasted have their name."""
     ends = [*(reign.at_s for reign in line[1:]), np.inf] if line else []
     previous: int | None = None
@@ -202,7 +202,7 @@ def _draw_reigns(axes: Axes, poses: Table, line: list[Reign], colours: dict[int,
         )  # fmt: skip
 
 
-def _legend(log: Log, gone: list[Departure], colours: dict[int, str]) -> list[Line2D]:
+def _legend(log: Log, gone: list[LastSeen], colours: dict[int, str]) -> list[Line2D]:
     fates = {departure.robot: f"{departure.why}, {departure.at_s:.0f} s" for departure in gone}
     if log.summary is not None:
         lost = {

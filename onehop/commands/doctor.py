@@ -78,8 +78,8 @@ def _library(name: str) -> Check:
 def _bus() -> Check:
     """Open a router on loopback and reach it, as a mission does."""
     from onehop.contracts.errors import MissionError
-    from onehop.drive.bus import open_client, open_router
     from onehop.mission.processes import free_endpoint
+    from onehop.node.bus import open_client, open_router
 
     try:
         endpoint = free_endpoint()

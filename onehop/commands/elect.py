@@ -2,7 +2,7 @@
 
 from onehop.commands.output import emit_json, stdout, table
 from onehop.contracts.errors import InputError
-from robot_agent.core.formation import formation
+from robot_agent.core.team.formation import formation
 
 
 def elect(ids: str, narrow: bool, spacing: float, as_json: bool) -> int:

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from onehop.analysis.explanation import explain as explain_moment
-from onehop.analysis.telling import tell
+from onehop.analysis.explanation_text import tell
 from onehop.commands.opening import open_with_warning
 from onehop.commands.output import emit_json
 

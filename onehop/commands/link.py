@@ -5,7 +5,7 @@ from dataclasses import asdict, replace
 from onehop.commands.output import emit_json, stdout, table
 from onehop.contracts.errors import InputError
 from onehop.contracts.radio_section import RadioSection
-from radio_proxy.core.tables import link_table, saturation_table
+from radio_proxy.core.link_tables import link_table, saturation_table
 
 RATES = (1.0, 2.0, 5.5, 11.0)
 MOST_BYTES = 2304

@@ -3,12 +3,13 @@
 from pathlib import Path
 from typing import Any
 
-from onehop import scenario_file
 from onehop.analysis.shortest import KnownMap, way_length
 from onehop.commands.output import emit_json
-from onehop.drive.solo import Solo, solo
-from world_server.core.mapfile import load_map
-from world_server.core.walls import FloatArray, WallMap
+from onehop.contracts.arrays import FloatArray
+from onehop.drivers.trial import Trial, run_trial
+from onehop.maps.map_file import load_map
+from onehop.maps.walls import WallMap
+from onehop.scenario import scenario_file
 
 RASTER_CELLS = 400
 """Cells along the longer side of the map in which the shortest way is searched."""
@@ -41,7 +42,7 @@ def plan(
     scenario = bundle.scenario
     walls = load_map(scenario.map, bundle.files)
     with scenario_file.in_file(map_file):
-        run = solo(scenario, walls)
+        run = run_trial(scenario, walls)
     first = run.path[0]
     target = (scenario.goal.x, scenario.goal.y)
     shortest = _shortest(walls, scenario.planner.inflation, (first[0], first[1]), target)
@@ -69,7 +70,7 @@ def _shortest(
     return known.shortest(start, known.distances(goal))
 
 
-def _print(summary: dict[str, Any], run: Solo, figure: Path | None) -> None:
+def _print(summary: dict[str, Any], run: Trial, figure: Path | None) -> None:
     print(f"answer         {run.progress.value}")
     print(f"path           {summary['path_length_m']:.1f} m in {summary['steps']} ticks")
     shortest = summary["shortest_m"]

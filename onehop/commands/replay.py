@@ -3,12 +3,12 @@
 from pathlib import Path
 from typing import Any
 
-from onehop import scenario_file
 from onehop.commands.opening import open_with_warning
 from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
-from onehop.drive.replay import Divergence, Report
-from onehop.drive.replay import replay as re_execute
+from onehop.drivers.replay import Divergence, Report
+from onehop.drivers.replay import replay as re_execute
+from onehop.scenario import scenario_file
 
 
 def replay(

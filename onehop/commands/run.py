@@ -6,12 +6,12 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from onehop import scenario_file
 from onehop.commands.output import emit_json, say, stdout, table
 from onehop.contracts.messages import Action, Progress, RobotProgress
 from onehop.mission.progress import Display
-from onehop.mission.summary import summarize
-from onehop.scenario_file import Bundle
+from onehop.scenario import scenario_file
+from onehop.scenario.scenario_file import Bundle
+from onehop.wire.summary import summarize
 
 SHOW_S = 0.2
 """Wall-clock time between two updates of the progress display."""
@@ -49,7 +49,7 @@ def run(
             from onehop.mission import launcher
 
             arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
-            order = launcher.Order(arguments, bundle.scenario.team.robots, folder, record)
+            order = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, record)
             summary = launcher.run(order, display.show)
     figure = _draw(folder, record)
     if with_view:
@@ -78,9 +78,9 @@ def _fresh_folder(bundle: Bundle) -> Path:
 def _run_inline(
     bundle: Bundle, folder: Path, record: bool, show: Callable[[Progress], None]
 ) -> dict[str, Any]:
-    from onehop.drive import inline
-    from onehop.drive.journal import Journal, WireMessage
-    from onehop.drive.log_writer import LogWriter
+    from onehop.drivers import inline
+    from onehop.wire.journal import Journal, WireMessage
+    from onehop.wire.log_writer import LogWriter
     from world_server.core.world import World
 
     path = folder / "mission.mcap"
@@ -131,7 +131,7 @@ def _draw(folder: Path, record: bool) -> Path | None:
     if not record or not path.exists():
         return None
     from onehop.analysis.trajectory import draw_trajectory
-    from onehop.drive.log_reader import LogFile
+    from onehop.wire.log_reader import LogFile
 
     figure = folder / "trajectory.png"
     draw_trajectory(LogFile(path), figure)

@@ -6,7 +6,7 @@ from pathlib import Path
 from onehop.analysis.salvage import salvage as salvage_log
 from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
-from onehop.drive.log_reader import LogFile
+from onehop.wire.log_reader import LogFile
 
 
 def salvage(torn: Path, out: Path, as_json: bool) -> int:

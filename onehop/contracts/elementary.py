@@ -21,9 +21,8 @@ from collections.abc import Callable
 from decimal import Decimal, localcontext
 
 import numpy as np
-import numpy.typing as npt
 
-FloatArray = npt.NDArray[np.float64]
+from onehop.contracts.arrays import FloatArray
 
 _BITS = 36
 _SHIFT = 1.5 * 2.0 ** (52 - _BITS)

@@ -7,9 +7,7 @@ together and take apart. Payloads between robots stay opaque bytes here: only ro
 from enum import StrEnum
 from typing import TypeAlias
 
-import numpy as np
-import numpy.typing as npt
-
+from onehop.contracts.arrays import Ranges
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.team import Status
 from onehop.contracts.values import Value, Wire
@@ -17,7 +15,6 @@ from onehop.contracts.values import Value, Wire
 BROADCAST = 0
 """Destination of a frame for everyone in range (robot ids start at 1)."""
 
-Ranges: TypeAlias = npt.NDArray[np.float32]
 NoteValue: TypeAlias = int | float | str | tuple[int, ...]
 
 
@@ -131,7 +128,7 @@ class Presence(Value, frozen=True):
     held: bool
 
 
-class Offer(Value, frozen=True):
+class TransmitRequest(Value, frozen=True):
     """What one present robot handed to its network card in the last tick."""
 
     robot: int
@@ -182,14 +179,14 @@ class Truth(Wire, frozen=True):
     tick: int
     time_ns: int
     present: tuple[Presence, ...]
-    offers: tuple[Offer, ...]
+    transmit_requests: tuple[TransmitRequest, ...]
     cuts: tuple[Cut, ...]
     jams: tuple[Jam, ...]
     contacts: tuple[Contact, ...]
     departures: tuple[Departure, ...]
 
 
-class Fate(StrEnum):
+class DeliveryStatus(StrEnum):
     """What became of a data message."""
 
     DELIVERED = "delivered"
@@ -216,7 +213,7 @@ class Verdict(Value, frozen=True):
     source: int
     destination: int
     receiver: int
-    fate: Fate
+    status: DeliveryStatus
     msdu_bytes: int
     path: tuple[int, ...]
     attempts: tuple[int, ...]
@@ -229,8 +226,8 @@ class Verdict(Value, frozen=True):
     bit_error_rate: float
 
 
-class Ether(Wire, frozen=True):
-    """What happened on the air in the tick that ends at time_ns (key ether).
+class RadioRecord(Wire, frozen=True):
+    """What happened on the air in the tick that ends at time_ns (key record).
 
     control_bytes: routing bytes sent since the start of the mission, by kind ("rreq", "rrep", "rerr",
         and "source_route" for what MRSR adds to data).
@@ -246,7 +243,7 @@ class Carriage(Value, frozen=True):
     """What `Radio.carry` returns: inboxes of every present robot, and the record of the tick."""
 
     inboxes: dict[int, Inbox]
-    ether: Ether
+    record: RadioRecord
 
 
 class Lost(Value, frozen=True):
@@ -257,7 +254,7 @@ class Lost(Value, frozen=True):
     why: str
 
 
-class Reign(Value, frozen=True):
+class LeadershipTerm(Value, frozen=True):
     """A roster from the moment a robot began to act as its leader."""
 
     at_s: float
@@ -274,7 +271,7 @@ class Outcome(Value, frozen=True):
     reason: str
     arrived: tuple[int, ...]
     lost: tuple[Lost, ...]
-    leaders: tuple[Reign, ...]
+    leaders: tuple[LeadershipTerm, ...]
     ticks: int
     sim_s: float
     collisions: int

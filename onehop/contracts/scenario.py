@@ -1,8 +1,7 @@
 """A whole mission as frozen values: map, team, poses, goal, gains, planner, radio, clock, faults, seed.
 
-Reading and validating files is onehop/scenario_file.py's work; here are the values, their defaults with
-units and source, and the conditions that they must fulfil (`problems`). A robot gets only its Briefing:
-it knows neither the map nor the others' poses.
+Reading files is onehop/scenario's work; here are the values, their defaults with units and source, and
+the conditions that they must fulfil (`problems`).
 """
 
 from collections.abc import Iterator
@@ -21,7 +20,6 @@ from onehop.contracts.sections import (
     StartSection,
     TeamSection,
 )
-from onehop.contracts.values import Wire
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,44 +71,3 @@ class Scenario:
                     f"robot {strangers[0]} is not in the team",
                     f"ids of the team: {', '.join(map(str, robots))}",
                 )
-
-
-class Briefing(Wire, frozen=True):
-    """All that a robot is told before it starts (thesis 3.3.2): never the map, never others' poses."""
-
-    robot: int
-    incarnation: int
-    seed: int
-    period_ns: int
-    goal: GoalSection
-    team: TeamSection
-    body: RobotSection
-    gains: GainsSection
-    planner: PlannerSection
-    radio: RadioSection
-
-
-class RadioBriefing(Wire, frozen=True):
-    """All that the radio proxy is told before it starts. walls: segments x0, y0, x1, y1 [m]."""
-
-    seed: int
-    period_ns: int
-    robots: tuple[int, ...]
-    radio: RadioSection
-    walls: tuple[tuple[float, float, float, float], ...]
-
-
-def robot_briefing(scenario: Scenario, robot: int, incarnation: int) -> Briefing:
-    """What robot `robot` may know of a scenario."""
-    return Briefing(
-        robot=robot,
-        incarnation=incarnation,
-        seed=scenario.seed,
-        period_ns=scenario.clock.period_ns,
-        goal=scenario.goal,
-        team=scenario.team,
-        body=scenario.robot,
-        gains=scenario.gains,
-        planner=scenario.planner,
-        radio=scenario.radio,
-    )

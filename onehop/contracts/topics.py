@@ -35,13 +35,13 @@ PERCEPT = "percept"
 OUT = "out"
 """Robot to world: its action of tick k."""
 
-FATE = "fate"
+KILL = "kill"
 """World to robot: a scripted kill, which the robot's process carries out on itself."""
 
-AIR = "air"
+CARRIED = "carried"
 """Radio to world: the inboxes of tick k of every present robot, and the record of the tick."""
 
-RECORD = "record"
+TICKS = "ticks"
 """World to recorder: all wire messages of one tick."""
 
 RECORDED = "recorded"
@@ -79,7 +79,7 @@ def config(name: str) -> str:
 TRUTH = "truth"
 """World to radio, and log channel: ground truth of tick k, and what was offered to the air."""
 
-ETHER = "ether"
+RADIO_RECORD = "radio"
 """Log channel of the radio's verdicts; on the bus they travel in air."""
 
 

@@ -14,10 +14,10 @@ from typing import Any
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.contracts.messages import End, Outcome, Progress
-from onehop.drive.bus import Bus, open_client
-from onehop.drive.codec import decode
-from onehop.mission.processes import Family, free_endpoint
-from onehop.mission.summary import summarize
+from onehop.mission.processes import ProcessGroup, free_endpoint
+from onehop.node.bus import Bus, open_client
+from onehop.wire.codec import decode
+from onehop.wire.summary import summarize
 
 START_ATTEMPTS = 5
 """Tries when another program takes the free port between the search for it and its use."""
@@ -29,7 +29,7 @@ LEAVE_S = 10.0
 
 
 @dataclass(frozen=True, slots=True)
-class Order:
+class LaunchPlan:
     """What to run. world_arguments: scenario and options, as `python -m world_server` takes them."""
 
     world_arguments: tuple[str, ...]
@@ -38,7 +38,7 @@ class Order:
     record: bool
 
 
-def run(order: Order, show: Callable[[Progress], None]) -> dict[str, Any]:
+def run(order: LaunchPlan, show: Callable[[Progress], None]) -> dict[str, Any]:
     """Run a mission to its end and return its summary. show: called some times a second.
 
     Raises MissionError when it cannot be started, KeyboardInterrupt after an orderly end on Ctrl-C.
@@ -48,7 +48,7 @@ def run(order: Order, show: Callable[[Progress], None]) -> dict[str, Any]:
         for _ in range(START_ATTEMPTS):
             mission = f"onehop-{uuid.uuid4().hex[:8]}"
             endpoint = free_endpoint()
-            with Family(endpoint, mission, order.robots, folder) as family:
+            with ProcessGroup(endpoint, mission, order.robots, folder) as family:
                 summary = _run_once(order, family, mission, endpoint, show)
                 if summary is not None:
                     return summary
@@ -58,7 +58,11 @@ def run(order: Order, show: Callable[[Progress], None]) -> dict[str, Any]:
 
 
 def _run_once(
-    order: Order, family: Family, mission: str, endpoint: str, show: Callable[[Progress], None]
+    order: LaunchPlan,
+    family: ProcessGroup,
+    mission: str,
+    endpoint: str,
+    show: Callable[[Progress], None],
 ) -> dict[str, Any] | None:
     """One attempt; None when the port was taken in between."""
     family.start_world(order.world_arguments)
@@ -73,7 +77,7 @@ def _run_once(
         return _Watch(order, family, bus, show).until_end()
 
 
-def _connect(family: Family, mission: str, endpoint: str) -> Bus | None:
+def _connect(family: ProcessGroup, mission: str, endpoint: str) -> Bus | None:
     """The operator's session, as soon as the world listens; None when the port was taken in between."""
     while True:
         try:
@@ -91,7 +95,9 @@ def _connect(family: Family, mission: str, endpoint: str) -> Bus | None:
 class _Watch:
     """The operator's seat of one running mission."""
 
-    def __init__(self, order: Order, family: Family, bus: Bus, show: Callable[[Progress], None]) -> None:
+    def __init__(
+        self, order: LaunchPlan, family: ProcessGroup, bus: Bus, show: Callable[[Progress], None]
+    ) -> None:
         self._order = order
         self._family = family
         self._bus = bus

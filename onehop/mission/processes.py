@@ -10,9 +10,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from onehop.contracts import topics
-from onehop.drive.bus import make_credentials
-from onehop.drive.node import CREDENTIALS_VARIABLE, PASSWORD_VARIABLE
-from onehop.mission.summary import Process
+from onehop.node.bus import make_credentials
+from onehop.node.startup import CREDENTIALS_VARIABLE, PASSWORD_VARIABLE
+from onehop.wire.summary import Process
 
 GRACE_S = 3.0
 """Time between asking the children to end and killing them."""
@@ -25,7 +25,7 @@ def free_endpoint() -> str:
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
-class Family:
+class ProcessGroup:
     """All children of one mission. Leaving the context ends every one of them.
 
     Each gets its own password through its environment, a lifeline that ends it when this process dies,
@@ -42,7 +42,7 @@ class Family:
         self.children: dict[str, subprocess.Popen[bytes]] = {}
         self.processes: list[Process] = []
 
-    def __enter__(self) -> "Family":
+    def __enter__(self) -> "ProcessGroup":
         return self
 
     def __exit__(self, *_: object) -> None:

@@ -1,12 +1,12 @@
 """Times of the DCF and of its frames, in integer nanoseconds (thesis eq. 3.15 to 3.22).
 
-The constants are onehop.contracts.airtime's; here they become the clock of the event simulation. Left
+The constants are onehop.contracts.ideal_link's; here they become the clock of the event simulation. Left
 out: short preamble, EIFS (neither Bianchi's nor the thesis's sums have it).
 """
 
 from dataclasses import dataclass
 
-from onehop.contracts import airtime
+from onehop.contracts import ideal_link
 from onehop.contracts.radio_section import RadioSection
 
 SPEED_OF_LIGHT = 299_792_458.0
@@ -35,9 +35,9 @@ class Timing:
     answer_timeout: int
     mac_header_bytes: int
     rate_mbps: float
-    basic_rate_mbps: float = airtime.BASIC_RATE_MBPS
-    cw_min: int = airtime.CW_MIN
-    cw_max: int = airtime.CW_MAX
+    basic_rate_mbps: float = ideal_link.BASIC_RATE_MBPS
+    cw_min: int = ideal_link.CW_MIN
+    cw_max: int = ideal_link.CW_MAX
     turnaround: int = 5 * US
 
     def data(self, msdu_bytes: int) -> int:
@@ -56,13 +56,13 @@ class Timing:
 def dsss(section: RadioSection) -> Timing:
     """The timing of 802.11b as a scenario sets it."""
     return Timing(
-        slot=round(airtime.SLOT_US * US),
-        sifs=round(airtime.SIFS_US * US),
-        difs=round(airtime.DIFS_US * US),
-        preamble=round(airtime.PREAMBLE_US * US),
-        rts=round(airtime.frame_us(airtime.RTS_BYTES, airtime.BASIC_RATE_MBPS) * US),
-        cts=round(airtime.frame_us(airtime.ACK_BYTES, airtime.BASIC_RATE_MBPS) * US),
-        ack=round(airtime.frame_us(airtime.ACK_BYTES, airtime.BASIC_RATE_MBPS) * US),
+        slot=round(ideal_link.SLOT_US * US),
+        sifs=round(ideal_link.SIFS_US * US),
+        difs=round(ideal_link.DIFS_US * US),
+        preamble=round(ideal_link.PREAMBLE_US * US),
+        rts=round(ideal_link.frame_us(ideal_link.RTS_BYTES, ideal_link.BASIC_RATE_MBPS) * US),
+        cts=round(ideal_link.frame_us(ideal_link.ACK_BYTES, ideal_link.BASIC_RATE_MBPS) * US),
+        ack=round(ideal_link.frame_us(ideal_link.ACK_BYTES, ideal_link.BASIC_RATE_MBPS) * US),
         answer_timeout=round(section.cts_timeout_us * US),
         mac_header_bytes=section.mac_header_bytes,
         rate_mbps=section.rate_mbps,
@@ -76,15 +76,17 @@ def delay_ns(distance: float) -> int:
 
 def collision_us(propagation_us: float = 0.0) -> float:
     """Time lost when an RTS collides [us] (thesis eq. 3.17)."""
-    rts = airtime.frame_us(airtime.RTS_BYTES, airtime.BASIC_RATE_MBPS)
-    return rts + propagation_us + airtime.DIFS_US + airtime.mean_backoff_us()
+    rts = ideal_link.frame_us(ideal_link.RTS_BYTES, ideal_link.BASIC_RATE_MBPS)
+    return rts + propagation_us + ideal_link.DIFS_US + ideal_link.mean_backoff_us()
 
 
 def printed_exchange_us(rate_mbps: float, msdu_bytes: int, propagation_us: float = 0.0) -> float:
     """Time of a successful exchange exactly as eq. 3.16 is printed, without ACK and third SIFS [us]."""
-    full = airtime.exchange_us(rate_mbps, msdu_bytes, True, airtime.MAC_HEADER_BYTES, propagation_us)
-    ack = airtime.frame_us(airtime.ACK_BYTES, airtime.BASIC_RATE_MBPS)
-    return full - ack - airtime.SIFS_US - propagation_us
+    full = ideal_link.exchange_us(
+        rate_mbps, msdu_bytes, True, ideal_link.MAC_HEADER_BYTES, propagation_us
+    )
+    ack = ideal_link.frame_us(ideal_link.ACK_BYTES, ideal_link.BASIC_RATE_MBPS)
+    return full - ack - ideal_link.SIFS_US - propagation_us
 
 
 def printed_throughput_bps(rate_mbps: float, msdu_bytes: int, propagation_us: float = 0.0) -> float:

@@ -8,7 +8,7 @@ instant as another station's draws a backoff, because ticks would otherwise make
 from collections import deque
 from dataclasses import dataclass, field
 
-from onehop.contracts.messages import Fate
+from onehop.contracts.messages import DeliveryStatus
 from radio_proxy.core.airtime import Timing
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.medium import Emission, Medium
@@ -36,7 +36,7 @@ class Frame:
     attempts: int = 0
     received: bool = False
     sinr_db: float = 0.0
-    cause: Fate | None = None
+    cause: DeliveryStatus | None = None
 
 
 @dataclass(slots=True, eq=False)

@@ -16,15 +16,15 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from onehop.contracts.airtime import ACK_BYTES, RTS_BYTES
-from onehop.contracts.messages import Fate
+from onehop.contracts.ideal_link import ACK_BYTES, RTS_BYTES
+from onehop.contracts.messages import DeliveryStatus
 from radio_proxy.core.airtime import Timing, delay_ns
 from radio_proxy.core.contention import EVERYONE, NEVER, Contention, Frame, Station
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.medium import Emission, Medium, Reservation
 
-Event = Callable[[Any, int], None]
-Judgement = tuple[Fate | None, float]
+Callback = Callable[[Any, int], None]
+Judgement = tuple[DeliveryStatus | None, float]
 
 
 class Listener(Protocol):
@@ -81,11 +81,11 @@ class Dcf:
         self._take_shortcuts = take_shortcuts
         self._stations = [Station(i) for i in range(count)]
         self._contention = Contention(timing, medium, draws)
-        self._events: list[tuple[int, int, Event, Any]] = []
+        self._events: list[tuple[int, int, Callback, Any]] = []
         self._sequence = 0
         self._horizon = 0
 
-    def at(self, time_ns: int, event: Event, argument: Any) -> None:
+    def at(self, time_ns: int, event: Callback, argument: Any) -> None:
         """Call event(argument, time_ns) at that time; events of one instant in order of this call."""
         self._sequence += 1
         heapq.heappush(self._events, (time_ns, self._sequence, event, argument))
@@ -224,7 +224,7 @@ class Dcf:
         """Judge the frame on the air at one end of the exchange, and remember what kept it away."""
         frame = exchange.frame
         if exchange.sender.gone or exchange.receiver.gone:
-            frame.cause = Fate.RECEIVER_GONE
+            frame.cause = DeliveryStatus.RECEIVER_GONE
         elif exchange.foreseen:
             frame.cause, frame.sinr_db = exchange.foreseen.pop(0)
         else:
@@ -243,7 +243,7 @@ class Dcf:
         data = timing.data(exchange.frame.msdu_bytes)
         heard = self._hears(exchange, receiver, timing.basic_rate_mbps, RTS_BYTES)
         if heard and self.medium.reserved_until(receiver.index, now) > now:
-            exchange.frame.cause = Fate.RETRY_LIMIT
+            exchange.frame.cause = DeliveryStatus.RETRY_LIMIT
             heard = False
         reservation = self._reserve(exchange, now, 3, timing.cts + data + timing.ack)
         if heard:

@@ -12,7 +12,7 @@ every frame would cost more than the rest of the model.
 from dataclasses import dataclass
 
 from onehop.contracts import elementary
-from onehop.contracts.messages import Fate
+from onehop.contracts.messages import DeliveryStatus
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.error_rates import CERTAIN_SINR_DB, frame_success
 from radio_proxy.core.propagation import SILENT_DB, Field
@@ -109,14 +109,14 @@ class Medium:
 
     def receive(
         self, emission: Emission, station: int, rate_mbps: float, bits: int
-    ) -> tuple[Fate | None, float]:
+    ) -> tuple[DeliveryStatus | None, float]:
         """What keeps a station from getting a frame (None: nothing), and its SINR [dB].
 
         RETRY_LIMIT stands for a collision: without the others the frame would have been received.
         """
         mean_db = emission.row[station]
         if mean_db <= SILENT_DB:
-            return Fate.BELOW_THRESHOLD, SILENT_DB
+            return DeliveryStatus.BELOW_THRESHOLD, SILENT_DB
         fade_db = emission.fade_db
         if fade_db is None:
             fade_db = self._sigma_db * self._draws.normal() if self._sigma_db else 0.0
@@ -126,11 +126,11 @@ class Medium:
             sinr_db = self._mean_sinr_db(emission, station) + fade_db
         if sinr_db < self._threshold_db:
             collided = alone_db >= self._threshold_db
-            return (Fate.RETRY_LIMIT if collided else Fate.BELOW_THRESHOLD), sinr_db
+            return (DeliveryStatus.RETRY_LIMIT if collided else DeliveryStatus.BELOW_THRESHOLD), sinr_db
         if sinr_db >= CERTAIN_SINR_DB:
             return None, sinr_db
         lost = self._draws.uniform() >= frame_success(rate_mbps, sinr_db, bits)
-        return (Fate.BIT_ERRORS if lost else None), sinr_db
+        return (DeliveryStatus.BIT_ERRORS if lost else None), sinr_db
 
     def _mean_sinr_db(self, emission: Emission, station: int) -> float:
         rise_db = self.field.noise_rise_db[station]

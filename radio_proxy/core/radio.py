@@ -12,29 +12,29 @@ message. Repetitions, RTS, CTS and ACK are the link's business and not in it.
 from collections.abc import Callable
 from typing import Any
 
+from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.messages import (
     BROADCAST,
     Carriage,
-    Ether,
-    Fate,
+    DeliveryStatus,
     Inbox,
-    Offer,
     Presence,
+    RadioRecord,
     Reception,
     Transmission,
+    TransmitRequest,
     Truth,
     Verdict,
 )
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import RadioBriefing
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.contention import EVERYONE, Frame
+from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.error_rates import bit_error_rate
 from radio_proxy.core.medium import Emission, Medium
-from radio_proxy.core.message import Data, Message
 from radio_proxy.core.propagation import OWN_DB, Field, link_budget
 from radio_proxy.core.routing.direct import DirectRouter
 from radio_proxy.core.routing.interface import Router
@@ -42,7 +42,7 @@ from radio_proxy.core.routing.mrdv import MrdvRouter
 from radio_proxy.core.routing.mrsr import MrsrRouter
 
 
-class Card:
+class Nic:
     """The network card of one incarnation of one robot, as its routing protocol sees it."""
 
     def __init__(self, radio: "Radio", presence: Presence, section: RadioSection, now: int) -> None:
@@ -62,11 +62,11 @@ class Card:
     def send(self, packet: object, next_hop: int, size_bytes: int, kind: str, now: int) -> bool:
         return self._radio.send(self.robot, packet, next_hop, size_bytes, kind, now)
 
-    def deliver(self, data: Data, now: int) -> None:
+    def deliver(self, data: DataPacket, now: int) -> None:
         self._radio.deliver(data, now)
 
-    def drop(self, data: Data, fate: Fate) -> None:
-        self._radio.drop(data, fate)
+    def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
+        self._radio.drop(data, status)
 
     def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
         def unless_gone(given: Any, now: int) -> None:
@@ -108,9 +108,9 @@ class Radio:
             rts_threshold_bytes=section.rts_threshold_bytes,
             fade_per_exchange=section.fading == "exchange",
         )
-        self._cards: dict[int, Card] = {}
+        self._cards: dict[int, Nic] = {}
         self._incarnations: tuple[tuple[int, int], ...] = ()
-        self._offers: tuple[Offer, ...] = ()
+        self._offers: tuple[TransmitRequest, ...] = ()
         self._crowded = False
         self._numbers = dict.fromkeys(self._robots, 0)
         self._verdicts: list[Verdict] = []
@@ -123,8 +123,8 @@ class Radio:
         start = truth.time_ns - self._period
         self._welcome(truth, start)
         self._field.update(truth.present, truth.cuts, truth.jams)
-        self._offers = truth.offers
-        talking = [offer for offer in truth.offers if offer.outbox]
+        self._offers = truth.transmit_requests
+        talking = [offer for offer in truth.transmit_requests if offer.outbox]
         self._crowded = len(talking) > 1
         for offer in talking:
             for transmission in offer.outbox:
@@ -148,7 +148,7 @@ class Radio:
         self._verdicts = []
         if self._control_bytes != self._reported_bytes:
             self._reported_bytes = dict(sorted(self._control_bytes.items()))
-        return Carriage(inboxes, Ether(tick, time_ns, verdicts, self._reported_bytes))
+        return Carriage(inboxes, RadioRecord(tick, time_ns, verdicts, self._reported_bytes))
 
     def _welcome(self, truth: Truth, now: int) -> None:
         """Cards of robots that left (or came back as another process) die; new ones start empty."""
@@ -162,28 +162,28 @@ class Radio:
         for card in died:
             card.gone = True
             for data in card.router.abandon():
-                self.drop(data, Fate.SENDER_GONE)
+                self.drop(data, DeliveryStatus.SENDER_GONE)
         for robot in left:
             for frame in self._dcf.remove(self._index[robot]):
-                if isinstance(frame.packet, Data):
-                    self.drop(frame.packet.tried(frame.attempts), Fate.SENDER_GONE)
+                if isinstance(frame.packet, DataPacket):
+                    self.drop(frame.packet.tried(frame.attempts), DeliveryStatus.SENDER_GONE)
         for presence in truth.present:
             if before.get(presence.robot) != presence.incarnation:
-                self._cards[presence.robot] = Card(self, presence, self._section, now)
+                self._cards[presence.robot] = Nic(self, presence, self._section, now)
 
     def _submit(self, robot: int, transmission: Transmission, now: int) -> None:
         self._numbers[robot] += 1
         destination = transmission.destination
         size = max(transmission.msdu_bytes, len(transmission.payload))
-        message = Message(self._numbers[robot], robot, destination, transmission.payload, size, now)
-        data = Data(message, (robot,))
+        message = DataMessage(self._numbers[robot], robot, destination, transmission.payload, size, now)
+        data = DataPacket(message, (robot,))
         if destination == BROADCAST:
             if not self.send(robot, data, BROADCAST, size, "", now):
-                self.drop(data, Fate.QUEUE_FULL)
+                self.drop(data, DeliveryStatus.QUEUE_FULL)
         elif destination == robot:
-            self.drop(data, Fate.NO_ROUTE)
+            self.drop(data, DeliveryStatus.NO_ROUTE)
         elif destination not in self._index:
-            self.drop(data, Fate.RECEIVER_GONE)
+            self.drop(data, DeliveryStatus.RECEIVER_GONE)
         else:
             self._cards[robot].router.submit(data, now)
 
@@ -197,47 +197,47 @@ class Radio:
         frame = Frame(receiver, size_bytes, packet, urgent=kind != "")
         if not self._dcf.enqueue(self._index[robot], frame, now, self._crowded):
             return False
-        if isinstance(packet, Data):
+        if isinstance(packet, DataPacket):
             kind, size_bytes = "source_route", size_bytes - packet.message.msdu_bytes
         if size_bytes:
             self._control_bytes[kind] = self._control_bytes.get(kind, 0) + size_bytes
         return True
 
-    def deliver(self, data: Data, now: int) -> None:
+    def deliver(self, data: DataPacket, now: int) -> None:
         """A message reached its destination; a second copy of it is dropped."""
         message = data.message
         if not message.settled:
             message.settled = True
-            self._settle(data, message.destination, Fate.DELIVERED, now)
+            self._settle(data, message.destination, DeliveryStatus.DELIVERED, now)
         self._release(message)
 
-    def drop(self, data: Data, fate: Fate) -> None:
+    def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
         """One copy of a message is given up."""
-        data.message.loss = (data, fate)
+        data.message.loss = (data, status)
         self._release(data.message)
 
-    def _release(self, message: Message) -> None:
+    def _release(self, message: DataMessage) -> None:
         """A robot holds a message no more; when it was the last one, the message is lost."""
         message.copies -= 1
         if message.settled or message.copies > 0:
             return
         message.settled = True
         assert message.loss is not None
-        data, fate = message.loss
+        data, status = message.loss
         if message.destination == BROADCAST:
             for robot in sorted(self._cards):
                 if robot != message.source:
-                    self._settle(data, robot, fate, -1)
+                    self._settle(data, robot, status, -1)
             return
-        if fate is not Fate.SENDER_GONE and message.destination not in self._cards:
-            fate = Fate.RECEIVER_GONE
-        self._settle(data, message.destination, fate, -1)
+        if status is not DeliveryStatus.SENDER_GONE and message.destination not in self._cards:
+            status = DeliveryStatus.RECEIVER_GONE
+        self._settle(data, message.destination, status, -1)
 
-    def _settle(self, data: Data, receiver: int, fate: Fate, arrival: int) -> None:
+    def _settle(self, data: DataPacket, receiver: int, status: DeliveryStatus, arrival: int) -> None:
         message = data.message
-        verdict = message.verdict(data, receiver, fate, arrival)
+        verdict = message.verdict(data, receiver, status, arrival)
         self._verdicts.append(verdict)
-        if fate is Fate.DELIVERED:
+        if status is DeliveryStatus.DELIVERED:
             reception = Reception(
                 source=message.source,
                 payload=message.payload,
@@ -259,25 +259,25 @@ class Radio:
         """A draw of the radio's stream."""
         return self._draws.uniform()
 
-    def offer_of(self, robot: int) -> Offer:
+    def offer_of(self, robot: int) -> TransmitRequest:
         """The robot's last word about its speed and distance; at rest when it has said nothing yet."""
         for offer in self._offers:
             if offer.robot == robot:
                 return offer
-        return Offer(robot, 0.0, 0.0, ())
+        return TransmitRequest(robot, 0.0, 0.0, ())
 
     # What the link layer reports.
 
     def on_service(self, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
         packet = frame.packet
-        if isinstance(packet, Data) and packet.message.first_service < 0:
+        if isinstance(packet, DataPacket) and packet.message.first_service < 0:
             packet.message.first_service = now
             packet.message.discovery_before_service = packet.message.discovery
 
     def on_received(self, receiver: int, sender: int, frame: Frame, now: int) -> None:
         packet = frame.packet
         holder = self._robots[receiver]
-        if isinstance(packet, Data):
+        if isinstance(packet, DataPacket):
             packet.message.copies += 1
             self._note_link(packet, frame)
             packet = packet.moved(holder, frame.attempts)
@@ -295,17 +295,17 @@ class Radio:
 
     def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:
         robot = self._robots[sender]
-        if isinstance(frame.packet, Data):
+        if isinstance(frame.packet, DataPacket):
             self._release(frame.packet.message)
         self._cards[robot].router.on_acknowledged(frame.packet, self._robots[frame.receiver], now)
 
     def on_undeliverable(self, sender: int, frame: Frame, now: int) -> None:
         robot = self._robots[sender]
         packet = frame.packet
-        if isinstance(packet, Data):
+        if isinstance(packet, DataPacket):
             self._note_link(packet, frame)
             packet = packet.tried(frame.attempts)
-        cause = frame.cause or Fate.RETRY_LIMIT
+        cause = frame.cause or DeliveryStatus.RETRY_LIMIT
         self._cards[robot].router.on_undeliverable(packet, self._robots[frame.receiver], cause, now)
 
     def on_broadcast_done(self, sender: int, frame: Frame, emission: Emission, now: int) -> None:
@@ -313,20 +313,20 @@ class Radio:
         bits = 8 * (self._timing.mac_header_bytes + frame.msdu_bytes)
         rate_mbps = self._timing.basic_rate_mbps
         source = self._robots[sender]
-        if not isinstance(packet, Data):
+        if not isinstance(packet, DataPacket):
             self._cards[source].router.on_broadcast(packet, now)
         for robot in sorted(self._cards):
             if robot == source:
                 continue
             cause, sinr_db = self._dcf.medium.receive(emission, self._index[robot], rate_mbps, bits)
-            if isinstance(packet, Data):
+            if isinstance(packet, DataPacket):
                 packet.message.sinr_db = sinr_db
                 packet.message.bit_error_rate = bit_error_rate(rate_mbps, sinr_db)
                 copy = packet.tried(1) if cause else packet.moved(robot, 1)
-                self._settle(copy, robot, cause or Fate.DELIVERED, -1 if cause else now)
+                self._settle(copy, robot, cause or DeliveryStatus.DELIVERED, -1 if cause else now)
             elif cause is None:
                 self._cards[robot].router.on_packet(packet, source, now)
 
-    def _note_link(self, data: Data, frame: Frame) -> None:
+    def _note_link(self, data: DataPacket, frame: Frame) -> None:
         data.message.sinr_db = frame.sinr_db
         data.message.bit_error_rate = bit_error_rate(self._timing.rate_mbps, frame.sinr_db)

@@ -1,29 +1,30 @@
 """One robot: everything that it knows in, everything that it does out (`Percept -> Action`).
 
-Order of a tick: hear (protocol), drive (planner when leading, tracking when following), speak.
+CommandKind of a tick: hear (protocol), drive (planner when leading, tracking when following), speak.
 """
 
 import math
 
-from onehop.contracts.airtime import THESIS_THRESHOLD_BPS, threshold_bps
+from onehop.contracts.arrays import Ranges
+from onehop.contracts.beams import Beams
+from onehop.contracts.briefings import Briefing
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map
-from onehop.contracts.messages import Action, Note, Percept, Ranges
+from onehop.contracts.ideal_link import THESIS_THRESHOLD_BPS, threshold_bps
+from onehop.contracts.messages import Action, Note, Percept
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import Briefing
 from onehop.contracts.team import Mode, Status
-from robot_agent.core.follower import IN_POSITION, Follower
-from robot_agent.core.formation import Formation, formation
-from robot_agent.core.gains import make_policy
-from robot_agent.core.leader import Leader, PathfinderMaker
-from robot_agent.core.messages import Phase
-from robot_agent.core.modes import Event
+from robot_agent.core.motion.follower import IN_POSITION, Follower
+from robot_agent.core.motion.gains import make_policy
+from robot_agent.core.motion.leader import Leader, PathfinderMaker
+from robot_agent.core.motion.safety import SafetyFilter
+from robot_agent.core.motion.tracking import sampled
+from robot_agent.core.motion.trail import behind
 from robot_agent.core.planning import make_pathfinder
-from robot_agent.core.protocol import Protocol
-from robot_agent.core.safety import SafetyFilter
-from robot_agent.core.scan import Fan
-from robot_agent.core.standing import NANOSECONDS
-from robot_agent.core.tracking import sampled
-from robot_agent.core.trail import behind
+from robot_agent.core.team.formation import Formation, formation
+from robot_agent.core.team.modes import ModeEvent
+from robot_agent.core.team.protocol import TeamProtocol
+from robot_agent.core.team.standing import NANOSECONDS
+from robot_agent.core.team.team_messages import MissionPhase
 
 SETTLING_TICKS = 100
 """Ticks without coming nearer to its last slot after which a follower stops where it is."""
@@ -45,7 +46,7 @@ class Robot:
         self._briefing = briefing
         rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
         body, period = briefing.body, briefing.period_ns / NANOSECONDS
-        fan = Fan(body)
+        fan = Beams(body)
         gains = sampled(briefing.gains, period)
         dodge = tuple(float(share) for share in rng.random(64))
         self._follower = Follower(body, gains, fan, dodge)
@@ -53,7 +54,7 @@ class Robot:
         self._safety = SafetyFilter(body, fan, period)
         self._threshold = required_throughput_bps(briefing)
         self._policy = make_policy(briefing.gains, self._threshold)
-        self._protocol: Protocol | None = None
+        self._protocol: TeamProtocol | None = None
         self._formation: Formation | None = None
         self._formation_key: tuple[tuple[int, ...], bool] | None = None
         self._slot_key: tuple[Pose, tuple[int, ...], bool, bool] | None = None
@@ -74,7 +75,7 @@ class Robot:
         """Everything that the robot does at this tick. Bad messages are counted, never raised."""
         protocol = self._protocol
         if protocol is None:
-            protocol = self._protocol = Protocol(self._briefing, percept.time_ns)
+            protocol = self._protocol = TeamProtocol(self._briefing, percept.time_ns)
         now_ns, pose = percept.time_ns, percept.pose
         protocol.receive(now_ns, pose, self._in_position, percept.inbox)
         nearest = float(percept.scan.min())
@@ -104,7 +105,7 @@ class Robot:
         """How many messages were ignored so far, by why: garbled, stale, foreign."""
         return dict(self._protocol.counters) if self._protocol is not None else {}
 
-    def _status(self, protocol: Protocol) -> Status:
+    def _status(self, protocol: TeamProtocol) -> Status:
         leading = protocol.leading
         return Status(
             mode=protocol.mode,
@@ -120,7 +121,7 @@ class Robot:
             target_y=self._target[1],
         )
 
-    def _shape(self, protocol: Protocol) -> Formation:
+    def _shape(self, protocol: TeamProtocol) -> Formation:
         """Formation of the roster in force."""
         key = (protocol.members, protocol.narrow)
         if self._formation is None or key != self._formation_key:
@@ -130,7 +131,9 @@ class Robot:
             self._formation_key = key
         return self._formation
 
-    def _lead(self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float) -> Twist:
+    def _lead(
+        self, protocol: TeamProtocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float
+    ) -> Twist:
         goal = self._briefing.goal
         self._target = (goal.x, goal.y)
         self._error = self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
@@ -143,7 +146,7 @@ class Robot:
         return twist
 
     def _follow(
-        self, protocol: Protocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float
+        self, protocol: TeamProtocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float
     ) -> Twist:
         self._leader.begin()
         self._measure(protocol, now_ns)
@@ -163,7 +166,7 @@ class Robot:
             return STANDSTILL
         if protocol.mode is Mode.GIVING_WAY:
             return self._follower.draw_aside(pose, scan, link.lane)
-        moves = protocol.phase is Phase.DRIVING
+        moves = protocol.phase is MissionPhase.DRIVING
         standoff = math.hypot(target.x - leader.x, target.y - leader.y)
         twist = self._follower.step(
             pose, scan, nearest, target, link.trail, standoff, moves, self._k_rho
@@ -171,13 +174,13 @@ class Robot:
         self._tell_border(protocol)
         return twist
 
-    def _told_pose(self, protocol: Protocol, pose: Pose) -> Pose:
+    def _told_pose(self, protocol: TeamProtocol, pose: Pose) -> Pose:
         """What followers form up on: in profile `team` the course instead of the heading (trail.py)."""
         if not protocol.open or not protocol.leading or protocol.mode is Mode.SETUP:
             return pose
         return Pose(pose.x, pose.y, self._leader.trail.course(pose))
 
-    def _slot_pose(self, protocol: Protocol, leader: Pose) -> Pose:
+    def _slot_pose(self, protocol: TeamProtocol, leader: Pose) -> Pose:
         """This robot's slot in the map frame, from the leader's last pose."""
         key = (leader, protocol.members, protocol.narrow, protocol.mode is Mode.JOINING)
         if key != self._slot_key:
@@ -185,7 +188,7 @@ class Robot:
             self._best_error = math.inf
         return self._slot
 
-    def _placed(self, protocol: Protocol, leader: Pose) -> Pose:
+    def _placed(self, protocol: TeamProtocol, leader: Pose) -> Pose:
         shape = self._shape(protocol)
         if protocol.mode is Mode.JOINING or shape.leader == self._briefing.robot:
             x, y = to_map(leader, -self._briefing.team.spacing, 0.0)
@@ -196,7 +199,7 @@ class Robot:
             x, y = to_map(leader, slot.x, slot.y)
         return Pose(x, y, leader.heading)
 
-    def _measure(self, protocol: Protocol, now_ns: int) -> None:
+    def _measure(self, protocol: TeamProtocol, now_ns: int) -> None:
         """Throughput of each Next, 0 for a missing one, and the gain that follows (thesis 3.5)."""
         link = protocol.link
         if link.next_ns > self._next_ns:
@@ -208,33 +211,33 @@ class Robot:
             self._throughput = 0.0
             self._k_rho = self._policy.heard(0.0)
 
-    def _settle(self, protocol: Protocol) -> None:
+    def _settle(self, protocol: TeamProtocol) -> None:
         """Whether the robot is in its slot, or, in profile `team`, as near to it as it can get.
 
         Differs: a slot may lie inside a wall; the thesis would wait for it until the setup timeout.
         """
-        if protocol.phase is Phase.DRIVING or self._error < self._best_error - 0.05:
+        if protocol.phase is MissionPhase.DRIVING or self._error < self._best_error - 0.05:
             self._best_error, self._settling = self._error, 0
         else:
             self._settling += 1
         near = protocol.open and self._error < self._briefing.team.spacing / 2.0
         self._in_position = self._error <= IN_POSITION or (near and self._settling > SETTLING_TICKS)
 
-    def _at_rest(self, protocol: Protocol) -> bool:
+    def _at_rest(self, protocol: TeamProtocol) -> bool:
         """At the end of the mission: stop in the slot, or where nothing more is gained."""
-        if protocol.mode is Mode.STOPPED and protocol.phase is not Phase.FINAL:
+        if protocol.mode is Mode.STOPPED and protocol.phase is not MissionPhase.FINAL:
             return True
-        if protocol.phase is not Phase.FINAL:
+        if protocol.phase is not MissionPhase.FINAL:
             return False
         rest = self._in_position or self._settling > SETTLING_TICKS
         if protocol.mode in FOLLOWER_MODES and rest:
-            protocol.fire(Event.ARRIVED)
+            protocol.fire(ModeEvent.ARRIVED)
         return protocol.mode is Mode.STOPPED
 
-    def _tell_border(self, protocol: Protocol) -> None:
+    def _tell_border(self, protocol: TeamProtocol) -> None:
         """Border following interrupts Algorithm 1 and resumes it (thesis 3.3.4)."""
         border = self._follower.border
         if border and protocol.mode in (Mode.FOLLOWING, Mode.NARROW):
-            protocol.fire(Event.OBSTRUCTED)
+            protocol.fire(ModeEvent.OBSTRUCTED)
         elif not border and protocol.mode is Mode.BORDER:
-            protocol.fire(Event.CLEARED_NARROW if protocol.narrow else Event.CLEARED)
+            protocol.fire(ModeEvent.CLEARED_NARROW if protocol.narrow else ModeEvent.CLEARED)

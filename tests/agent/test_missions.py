@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from onehop import scenario_file
 from onehop.contracts.messages import Action, Outcome
 from onehop.contracts.team import Mode, Shape, Status
-from onehop.drive import inline
+from onehop.drivers import inline
+from onehop.scenario import scenario_file
 from world_server.core.world import World
 
 SCENARIOS = Path(__file__).parents[2] / "scenarios"

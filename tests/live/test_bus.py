@@ -9,7 +9,8 @@ import zenoh
 
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
-from onehop.drive.bus import (
+from onehop.mission.processes import free_endpoint
+from onehop.node.bus import (
     ALIVE,
     GONE,
     ROBOT_LINK_BYTES,
@@ -18,7 +19,6 @@ from onehop.drive.bus import (
     open_client,
     open_router,
 )
-from onehop.mission.processes import free_endpoint
 
 pytestmark = pytest.mark.live
 

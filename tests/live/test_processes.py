@@ -15,8 +15,8 @@ from typing import Any
 
 import pytest
 
-from onehop.drive.log_reader import LogFile, digest
-from onehop.drive.replay import replay
+from onehop.drivers.replay import replay
+from onehop.wire.log_reader import LogFile, digest
 from tests.onehop.scenes import FIELD, field, log_of
 
 pytestmark = pytest.mark.live

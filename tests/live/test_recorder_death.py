@@ -9,8 +9,8 @@ import pytest
 
 from onehop.analysis import open_log
 from onehop.analysis.salvage import salvage
-from onehop.drive.log_reader import LogFile
-from onehop.drive.replay import replay
+from onehop.drivers.replay import replay
+from onehop.wire.log_reader import LogFile
 from tests.live.test_processes import Mission
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]

@@ -2,12 +2,12 @@
 
 from pathlib import Path
 
-from onehop import scenario_file
-from onehop.drive import inline
-from onehop.drive.journal import Journal, WireMessage
-from onehop.drive.log_writer import LogWriter
-from onehop.mission.summary import summarize
-from onehop.scenario_file import Bundle
+from onehop.drivers import inline
+from onehop.scenario import scenario_file
+from onehop.scenario.scenario_file import Bundle
+from onehop.wire.journal import Journal, WireMessage
+from onehop.wire.log_writer import LogWriter
+from onehop.wire.summary import summarize
 
 FIELD = """
 name = "field"

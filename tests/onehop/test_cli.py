@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
-from onehop.drive.log_reader import LogFile, digest
+from onehop.wire.log_reader import LogFile, digest
 from tests.onehop.scenes import FIELD, field, log_of
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from onehop.cli import main
-from onehop.drive.log_reader import LogFile
-from onehop.drive.log_writer import LogWriter
+from onehop.wire.log_reader import LogFile
+from onehop.wire.log_writer import LogWriter
 from tests.onehop.scenes import field, log_of
 
 

@@ -1,9 +1,9 @@
 """Small truths for the radio's tests: robots on a line or anywhere, and what they offer."""
 
+from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.messages import Cut, Jam, Offer, Presence, Transmission, Truth, Verdict
+from onehop.contracts.messages import Cut, Jam, Presence, Transmission, TransmitRequest, Truth, Verdict
 from onehop.contracts.radio_section import RadioSection
-from onehop.contracts.scenario import RadioBriefing
 from radio_proxy.core.radio import Radio
 
 PERIOD = 50_000_000
@@ -47,8 +47,9 @@ class Mission:
                 Presence(i, self.incarnations[i], Pose(*self.places[i], 0.0), Twist(0.0, 0.0), False)
                 for i in robots
             ),
-            offers=tuple(
-                Offer(i, self.speeds[i], self.remaining[i], outboxes.get(i, ())) for i in robots
+            transmit_requests=tuple(
+                TransmitRequest(i, self.speeds[i], self.remaining[i], outboxes.get(i, ()))
+                for i in robots
             )
             if self.tick
             else (),
@@ -63,10 +64,10 @@ class Mission:
         carriage = self.radio.carry(self.truth(outboxes or {}))
         assert sorted(carriage.inboxes) == sorted(self.places)
         self.inboxes = carriage.inboxes
-        self.control_bytes = carriage.ether.control_bytes
-        self.verdicts += carriage.ether.verdicts
+        self.control_bytes = carriage.record.control_bytes
+        self.verdicts += carriage.record.verdicts
         self.tick += 1
-        return carriage.ether.verdicts
+        return carriage.record.verdicts
 
     def run(self, ticks: int, outboxes: Outboxes | None = None) -> list[Verdict]:
         """The outboxes once, then so many ticks in all; what was settled in them."""

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from onehop.contracts.messages import BROADCAST, Fate
-from radio_proxy.core.message import Data, Message
+from onehop.contracts.messages import BROADCAST, DeliveryStatus
+from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.routing.interface import Router
 from radio_proxy.core.routing.mrdv import MrdvRouter
 from radio_proxy.core.routing.mrsr import MrsrRouter
@@ -38,17 +38,17 @@ class Host:
         self.router: Router
 
     def send(self, packet: object, next_hop: int, size_bytes: int, kind: str, now: int) -> bool:
-        assert (kind == "") == isinstance(packet, Data)
+        assert (kind == "") == isinstance(packet, DataPacket)
         self._net.put(self, packet, next_hop, size_bytes, now)
         return True
 
-    def deliver(self, data: Data, now: int) -> None:
+    def deliver(self, data: DataPacket, now: int) -> None:
         self._net.delivered.append((now, data))
         data.message.settled = True
         self._net.release(data.message)
 
-    def drop(self, data: Data, fate: Fate) -> None:
-        data.message.loss = (data, fate)
+    def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
+        data.message.loss = (data, status)
         self._net.release(data.message)
 
     def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
@@ -81,12 +81,12 @@ class Net:
         self.hold_ns = 0
         self.links = {frozenset(link) for link in links}
         self.sent: list[Sent] = []
-        self.delivered: list[tuple[int, Data]] = []
-        self.lost: list[tuple[Message, Fate]] = []
+        self.delivered: list[tuple[int, DataPacket]] = []
+        self.lost: list[tuple[DataMessage, DeliveryStatus]] = []
         self._events: list[tuple[int, int, Callable[[Any, int], None], Any]] = []
         self._sequence = 0
         self.hosts: dict[int, Host] = {}
-        self.messages: list[Message] = []
+        self.messages: list[DataMessage] = []
         for robot in robots:
             self.start(robot, 0)
 
@@ -104,7 +104,7 @@ class Net:
         host = self.hosts.pop(robot)
         host.alive = False
         for data in host.router.abandon():
-            host.drop(data, Fate.SENDER_GONE)
+            host.drop(data, DeliveryStatus.SENDER_GONE)
 
     def linked(self, a: int, b: int) -> bool:
         return frozenset((a, b)) in self.links and a in self.hosts and b in self.hosts
@@ -113,11 +113,11 @@ class Net:
         self._sequence += 1
         heapq.heappush(self._events, (time_ns, self._sequence, event, argument))
 
-    def offer(self, source: int, destination: int) -> Message:
+    def offer(self, source: int, destination: int) -> DataMessage:
         """A robot hands over a message now."""
-        message = Message(len(self.messages) + 1, source, destination, b"", 800, self.now)
+        message = DataMessage(len(self.messages) + 1, source, destination, b"", 800, self.now)
         self.messages.append(message)
-        self.hosts[source].router.submit(Data(message, (source,)), self.now)
+        self.hosts[source].router.submit(DataPacket(message, (source,)), self.now)
         return message
 
     def run(self, duration_ns: int) -> None:
@@ -133,7 +133,7 @@ class Net:
         self.sent.append(Sent(now, host.robot, target, packet, size_bytes))
         self.at(now + self.hold_ns + HOP_NS, self._arrive, (host, packet, target))
 
-    def release(self, message: Message) -> None:
+    def release(self, message: DataMessage) -> None:
         """A robot holds a message no more; the last one loses it unless it was delivered."""
         message.copies -= 1
         assert message.copies >= 0
@@ -159,18 +159,18 @@ class Net:
         if reached:
             self._receive(host, packet, target, now)
         if not host.alive:
-            if isinstance(packet, Data):
-                host.drop(packet, Fate.SENDER_GONE)
+            if isinstance(packet, DataPacket):
+                host.drop(packet, DeliveryStatus.SENDER_GONE)
         elif reached and not self.loss(target, host.robot):
-            if isinstance(packet, Data):
+            if isinstance(packet, DataPacket):
                 self.release(packet.message)
             host.router.on_acknowledged(packet, target, now)
         else:
-            failed = packet.tried(7) if isinstance(packet, Data) else packet
-            host.router.on_undeliverable(failed, target, Fate.BELOW_THRESHOLD, now)
+            failed = packet.tried(7) if isinstance(packet, DataPacket) else packet
+            host.router.on_undeliverable(failed, target, DeliveryStatus.BELOW_THRESHOLD, now)
 
     def _receive(self, host: Host, packet: object, target: int, now: int) -> None:
-        if isinstance(packet, Data):
+        if isinstance(packet, DataPacket):
             packet.message.copies += 1
             packet = packet.moved(target, 1)
         else:

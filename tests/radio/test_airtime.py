@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.airtime import (
+from onehop.contracts.ideal_link import (
     exchange_us,
     frame_us,
     ideal_throughput_bps,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.messages import Cut, Fate
+from onehop.contracts.messages import Cut, DeliveryStatus
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.contention import EVERYONE
@@ -140,7 +140,7 @@ def test_nobody_answers_inside_a_reservation() -> None:
     late = cell.send_at(1200, 3, 2)
     cell.run(8_000)
     assert late.attempts >= 2
-    assert late.cause is Fate.RETRY_LIMIT
+    assert late.cause is DeliveryStatus.RETRY_LIMIT
     cell.run(60_000)
     assert len(cell.arrived) == 2
 
@@ -150,7 +150,7 @@ def test_a_frame_is_given_up_after_the_retry_limit() -> None:
     frame = cell.send_at(0, 0, 1)
     cell.run(100_000)
     assert cell.given_up == [frame]
-    assert (frame.attempts, frame.cause) == (7, Fate.BELOW_THRESHOLD)
+    assert (frame.attempts, frame.cause) == (7, DeliveryStatus.BELOW_THRESHOLD)
 
 
 def test_a_broadcast_is_sent_once_at_the_basic_rate() -> None:

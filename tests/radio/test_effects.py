@@ -4,8 +4,8 @@ import math
 
 import pytest
 
-from onehop.contracts.airtime import THESIS_THRESHOLD_BPS
-from onehop.contracts.messages import Cut, Fate, Jam, Reception, Verdict
+from onehop.contracts.ideal_link import THESIS_THRESHOLD_BPS
+from onehop.contracts.messages import Cut, DeliveryStatus, Jam, Reception, Verdict
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.routing.mrsr_packets import Rrep, Rreq, source_route_bytes
 from tests.radio.missions import Mission, line, message
@@ -60,7 +60,7 @@ def test_the_fallback_delivers_when_nobody_passes_requests_on(routing: str) -> N
     mission.speeds = dict.fromkeys(mission.places, 3.0)
     mission.remaining = dict.fromkeys(mission.places, 300.0)
     verdicts = mission.run(100, {1: (message(3),)})
-    assert [(v.fate, v.path) for v in verdicts] == [(Fate.DELIVERED, (1, 2, 3))]
+    assert [(v.status, v.path) for v in verdicts] == [(DeliveryStatus.DELIVERED, (1, 2, 3))]
     assert verdicts[0].discovery_ns > 500_000_000
 
 
@@ -88,7 +88,7 @@ def drive(routing: str, seed: int) -> tuple[int, list[Verdict]]:
         acknowledgements = {
             i: (message(3, 60),) for i, inbox in mission.inboxes.items() if i != 3 and inbox.receptions
         }
-    nexts = [v for v in mission.verdicts if v.msdu_bytes == 800 and v.fate is Fate.DELIVERED]
+    nexts = [v for v in mission.verdicts if v.msdu_bytes == 800 and v.status is DeliveryStatus.DELIVERED]
     return routing_bytes(mission), nexts
 
 
@@ -134,17 +134,17 @@ def test_a_cut_carries_nothing_and_heals() -> None:
     mission = Mission(line(2, 5.0), still("direct"))
     mission.cuts = (Cut((1,), (2,)),)
     (lost,) = mission.run(4, {1: (message(2),)})
-    assert (lost.fate, lost.attempts) == (Fate.BELOW_THRESHOLD, (7,))
+    assert (lost.status, lost.attempts) == (DeliveryStatus.BELOW_THRESHOLD, (7,))
     mission.cuts = ()
     (found,) = mission.run(1, {1: (message(2),)})
-    assert found.fate is Fate.DELIVERED
+    assert found.status is DeliveryStatus.DELIVERED
 
 
 def test_a_jam_raises_losses_inside_its_disc_alone() -> None:
     mission = Mission({1: (0.0, 0.0), 2: (6.0, 0.0), 3: (0.0, 6.0)}, still("direct"))
     mission.jams = (Jam(6.0, 0.0, 2.0, -40.0),)
-    fates = {v.receiver: v.fate for v in mission.run(4, {1: (message(2), message(3))})}
-    assert fates == {2: Fate.BELOW_THRESHOLD, 3: Fate.DELIVERED}
+    fates = {v.receiver: v.status for v in mission.run(4, {1: (message(2), message(3))})}
+    assert fates == {2: DeliveryStatus.BELOW_THRESHOLD, 3: DeliveryStatus.DELIVERED}
 
 
 def test_bit_errors_are_told_from_a_weak_signal() -> None:
@@ -152,7 +152,7 @@ def test_bit_errors_are_told_from_a_weak_signal() -> None:
     section = still("direct", receive_threshold_db=-50.0, carrier_sense_db=-60.0, tx_power_dbm=-42.0)
     (verdict,) = Mission(line(2, 1.0), section).run(4, {1: (message(2),)})
     assert verdict.snr_db == pytest.approx(-5.01, abs=0.01)
-    assert verdict.fate is Fate.BIT_ERRORS
+    assert verdict.status is DeliveryStatus.BIT_ERRORS
     assert verdict.bit_error_rate > 1e-4
 
 

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from onehop import scenario_file
 from onehop.contracts import topics
-from onehop.contracts.messages import Action, Ether, Fate, Verdict
+from onehop.contracts.messages import Action, DeliveryStatus, RadioRecord, Verdict
 from onehop.contracts.team import Status
-from onehop.drive import inline
-from onehop.drive.codec import decode
-from onehop.drive.journal import Journal
+from onehop.drivers import inline
+from onehop.scenario import scenario_file
+from onehop.wire.codec import decode
+from onehop.wire.journal import Journal
 from world_server.core.world import World
 
 pytestmark = pytest.mark.slow
@@ -37,11 +37,11 @@ y = 30
 class Diary:
     """What went over the air, and what the robots said of themselves, tick by tick."""
 
-    ethers: list[Ether] = field(default_factory=list)
+    ethers: list[RadioRecord] = field(default_factory=list)
     statuses: list[dict[int, Status]] = field(default_factory=list)
 
     def hear(self, tick: int, record: list[tuple[str, bytes]]) -> None:  # noqa: ARG002
-        self.ethers.append(decode(Ether, dict(record)[topics.ETHER]))
+        self.ethers.append(decode(RadioRecord, dict(record)[topics.RADIO_RECORD]))
 
     def watch(self, world: World, actions: Mapping[int, Action]) -> None:  # noqa: ARG002
         self.statuses.append({i: action.status for i, action in actions.items()})
@@ -50,9 +50,9 @@ class Diary:
         """The Next messages that were settled in a stretch of time."""
         return [
             verdict
-            for ether in self.ethers
-            if begin_s * SECOND <= ether.time_ns < end_s * SECOND
-            for verdict in ether.verdicts
+            for record in self.ethers
+            if begin_s * SECOND <= record.time_ns < end_s * SECOND
+            for verdict in record.verdicts
             if verdict.msdu_bytes == 800
         ]
 
@@ -60,8 +60,8 @@ class Diary:
         """What a robot said in a stretch of time."""
         return [
             statuses[robot]
-            for ether, statuses in zip(self.ethers, self.statuses, strict=True)
-            if begin_s * SECOND <= ether.time_ns < end_s * SECOND
+            for record, statuses in zip(self.ethers, self.statuses, strict=True)
+            if begin_s * SECOND <= record.time_ns < end_s * SECOND
         ]
 
 
@@ -90,7 +90,9 @@ def test_a_follower_cut_from_its_leader_is_led_over_a_relay_and_hurries(
     diary = fly(tmp_path, *settings, faults=(cut(25, [6], [3], 100),))
     for begin_s, hops, weak, k_rho in ((20, 1, False, 1.0), (32, 2, True, 3.0)):
         arrived = [v for v in diary.nexts(begin_s, begin_s + 5) if v.receiver == 6]
-        assert [(v.fate, len(v.path) - 1) for v in arrived] == [(Fate.DELIVERED, hops)] * len(arrived)
+        assert [(v.status, len(v.path) - 1) for v in arrived] == [
+            (DeliveryStatus.DELIVERED, hops)
+        ] * len(arrived)
         assert arrived
         said = diary.of(6, begin_s, begin_s + 5)
         assert {status.throughput_bps < status.threshold_bps for status in said} == {weak}
@@ -114,7 +116,9 @@ def test_the_normal_discovery_leads_a_follower_when_nobody_passes_requests_on(
     )
     faults = (cut(0, [1], [2, 4, 5, 6], 30), cut(30, [1], [3, 4, 5, 6], 100))
     diary = fly(tmp_path, *settings, faults=faults)
-    arrived = [v for v in diary.nexts(30, 40) if v.receiver == 1 and v.fate is Fate.DELIVERED]
+    arrived = [
+        v for v in diary.nexts(30, 40) if v.receiver == 1 and v.status is DeliveryStatus.DELIVERED
+    ]
     assert {v.path for v in arrived} == {(3, 2, 1)}
     assert max(v.discovery_ns for v in arrived) > searching_s * SECOND
     assert diary.statuses[-1][3].members == (1, 2, 3, 4, 5, 6)
@@ -123,7 +127,7 @@ def test_the_normal_discovery_leads_a_follower_when_nobody_passes_requests_on(
 def costs(diary: Diary) -> tuple[int, float]:
     """Bytes of routing packets, and the median time of a Next on a hop without discovery [ms]."""
     counted = diary.ethers[-1].control_bytes
-    arrived = [v for v in diary.nexts(0, 1000) if v.fate is Fate.DELIVERED]
+    arrived = [v for v in diary.nexts(0, 1000) if v.status is DeliveryStatus.DELIVERED]
     on_a_hop = [
         (v.arrival_ns - v.service_start_ns - v.discovery_ns) / (len(v.path) - 1) for v in arrived
     ]

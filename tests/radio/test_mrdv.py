@@ -2,8 +2,8 @@
 
 import pytest
 
-from onehop.contracts.messages import BROADCAST, Fate
-from radio_proxy.core.message import Data
+from onehop.contracts.messages import BROADCAST, DeliveryStatus
+from radio_proxy.core.data_message import DataPacket
 from radio_proxy.core.routing.mrdv import BUFFER_MESSAGES, NET_DIAMETER, MrdvRouter
 from radio_proxy.core.routing.mrdv_packets import RREP_BYTES, RREQ_BYTES, Rerr, Rrep, Rreq, rerr_bytes
 from radio_proxy.core.routing.mrdv_table import ACTIVE_ROUTE_NS, DELETE_PERIOD_NS, RouteTable
@@ -207,7 +207,7 @@ def test_messages_wait_for_the_route_and_keep_their_order() -> None:
 def test_the_buffer_is_bounded_and_drops_the_newest() -> None:
     net = Net("mrdv", [1], [])
     offered = [net.offer(1, 2) for _ in range(BUFFER_MESSAGES + 2)]
-    assert net.lost == [(message, Fate.QUEUE_FULL) for message in offered[-2:]]
+    assert net.lost == [(message, DeliveryStatus.QUEUE_FULL) for message in offered[-2:]]
 
 
 def test_a_partition_ends_in_no_route() -> None:
@@ -217,7 +217,7 @@ def test_a_partition_ends_in_no_route() -> None:
     net.run(21_519 * MS)
     assert not net.lost
     net.run(2 * MS)
-    assert net.lost == [(message, Fate.NO_ROUTE)]
+    assert net.lost == [(message, DeliveryStatus.NO_ROUTE)]
 
 
 def test_no_more_than_ten_requests_a_second() -> None:
@@ -237,7 +237,7 @@ def test_a_broken_link_kills_every_route_over_it_one_number_newer() -> None:
     table = router(net, 1).table
     for destination, via in ((5, 3), (6, 3), (7, 4)):
         table.offer(destination, via, 2, 10, LONG, 0)
-    router(net, 1).on_undeliverable(Rerr(()), 3, Fate.BELOW_THRESHOLD, 0)
+    router(net, 1).on_undeliverable(Rerr(()), 3, DeliveryStatus.BELOW_THRESHOLD, 0)
     assert [table.usable(d, 0) is not None for d in (5, 6, 7)] == [False, False, True]
     assert [entry.sequence for d in (5, 6, 7) if (entry := table.entry(d, 0))] == [11, 11, 10]
 
@@ -270,7 +270,7 @@ def test_precursors_are_told(precursors: tuple[int, ...], target: int) -> None:
     assert route is not None
     for robot in precursors:
         route.add_precursor(robot)
-    router(net, 1).on_undeliverable(Rerr(()), 3, Fate.BELOW_THRESHOLD, 0)
+    router(net, 1).on_undeliverable(Rerr(()), 3, DeliveryStatus.BELOW_THRESHOLD, 0)
     (error,) = net.of(Rerr)
     assert (error.packet, error.target) == (Rerr(((5, 11),)), target)
 
@@ -301,7 +301,7 @@ def test_data_without_a_route_is_answered_with_an_error() -> None:
     net.offer(1, 3)
     net.run(LONG)
     assert [(sent.sender, sent.target) for sent in net.of(Rerr)][:1] == [(2, 1)]
-    assert [fate for _, fate in net.lost] == [Fate.NO_ROUTE]
+    assert [status for _, status in net.lost] == [DeliveryStatus.NO_ROUTE]
 
 
 def test_the_origin_searches_once_more_when_its_link_breaks() -> None:
@@ -364,7 +364,7 @@ def test_hops_cost_what_they_should() -> None:
     net.offer(1, 4)
     net.run(100 * MS)
     assert net.delivered[-1][0] - start == 3 * HOP_NS
-    assert all(isinstance(sent.packet, Data) and sent.size_bytes == 800 for sent in net.sent)
+    assert all(isinstance(sent.packet, DataPacket) and sent.size_bytes == 800 for sent in net.sent)
 
 
 def test_after_a_restart_only_destinations_answer() -> None:

@@ -4,8 +4,8 @@ from itertools import pairwise
 
 import pytest
 
-from onehop.contracts.messages import BROADCAST, Fate
-from radio_proxy.core.message import Data, Message
+from onehop.contracts.messages import BROADCAST, DeliveryStatus
+from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.routing.mrsr import MAX_SALVAGE, SEND_BUFFER, MrsrRouter
 from radio_proxy.core.routing.mrsr_cache import CACHE_TIMEOUT_NS, PATHS_PER_DESTINATION, RouteCache
 from radio_proxy.core.routing.mrsr_packets import Rerr, Rrep, Rreq, source_route_bytes, without_loops
@@ -24,9 +24,9 @@ def request(target: int, *route: int, number: int = 1, ttl: int = 5, normal: boo
     return Rreq(number, target, route, ttl, normal)
 
 
-def data(source: int, path: tuple[int, ...], route: tuple[int, ...], salvaged: int = 0) -> Data:
-    message = Message(1, source, route[-1], b"", 800, 0)
-    return Data(message, path, (1,) * (len(path) - 1), route, salvaged)
+def data(source: int, path: tuple[int, ...], route: tuple[int, ...], salvaged: int = 0) -> DataPacket:
+    message = DataMessage(1, source, route[-1], b"", 800, 0)
+    return DataPacket(message, path, (1,) * (len(path) - 1), route, salvaged)
 
 
 def test_packet_sizes() -> None:
@@ -44,7 +44,7 @@ def test_the_header_grows_by_four_bytes_a_hop() -> None:
     net = chain("mrsr", 4)
     net.offer(1, 4)
     net.run(2_000 * MS)
-    assert {sent.size_bytes for sent in net.of(Data)} == {800 + source_route_bytes((1, 2, 3, 4))}
+    assert {sent.size_bytes for sent in net.of(DataPacket)} == {800 + source_route_bytes((1, 2, 3, 4))}
 
 
 def test_a_request_that_lists_this_robot_is_discarded() -> None:
@@ -178,14 +178,14 @@ def test_requests_come_ever_more_rarely() -> None:
     assert asked == [(1, False), (255, False), *[(255, True)] * 6]
     waits = [b.time_ns - a.time_ns - HOP_NS for a, b in pairwise(net.of(Rreq))]
     assert [wait // MS for wait in waits] == [30, 500, 1000, 2000, 4000, 8000, 10000]
-    assert net.lost == [(message, Fate.NO_ROUTE)]
+    assert net.lost == [(message, DeliveryStatus.NO_ROUTE)]
 
 
 def test_the_send_buffer_is_bounded_and_drops_the_newest() -> None:
     """4.2 leaves the policy open beyond 'SHOULD'; 64 messages, 30 s."""
     net = Net("mrsr", [1], [])
     offered = [net.offer(1, 2) for _ in range(SEND_BUFFER + 1)]
-    assert net.lost == [(offered[-1], Fate.QUEUE_FULL)]
+    assert net.lost == [(offered[-1], DeliveryStatus.QUEUE_FULL)]
     net.run(30_000 * MS)
     assert len(net.lost) == SEND_BUFFER + 1
 
@@ -284,8 +284,8 @@ def test_a_message_is_salvaged_fifteen_times_at_most() -> None:
     net = Net("mrsr", [1, 2], [(1, 2)])
     router(net, 2).cache.add((2, 4, 3), 0)
     worn = data(1, (1, 2), (1, 2, 3), salvaged=MAX_SALVAGE)
-    router(net, 2).on_undeliverable(worn.tried(7), 3, Fate.RETRY_LIMIT, 0)
-    assert net.lost == [(worn.message, Fate.RETRY_LIMIT)]
+    router(net, 2).on_undeliverable(worn.tried(7), 3, DeliveryStatus.RETRY_LIMIT, 0)
+    assert net.lost == [(worn.message, DeliveryStatus.RETRY_LIMIT)]
 
 
 def test_both_directions_of_a_route_are_learnt_from_data() -> None:

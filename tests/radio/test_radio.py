@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.messages import BROADCAST, Cut, Fate
+from onehop.contracts.messages import BROADCAST, Cut, DeliveryStatus
 from onehop.contracts.radio_section import RadioSection
 from tests.radio.missions import PERIOD, Mission, line, message
 
@@ -13,7 +13,7 @@ STILL = RadioSection(routing="direct", shadowing_db=0.0, mac_header_bytes=28)
 def test_idle_exchange_takes_what_ns3_measured() -> None:
     """ns-3 3.44, one hop without backoff, 28 B header: 7.542 ms (radio.md)."""
     (verdict,) = Mission(line(2, 5.0), STILL).run(1, {1: (message(2),)})
-    assert verdict.fate is Fate.DELIVERED
+    assert verdict.status is DeliveryStatus.DELIVERED
     assert verdict.arrival_ns - verdict.service_start_ns == pytest.approx(7_542_000, abs=100)
 
 
@@ -38,7 +38,10 @@ def test_a_message_that_outlasts_the_tick_arrives_in_the_next_one() -> None:
 
 def test_a_broadcast_has_one_verdict_for_each_robot_present() -> None:
     verdicts = Mission({1: (0, 0), 2: (5, 0), 3: (90, 0)}, STILL).run(1, {1: (message(BROADCAST, 40),)})
-    assert [(v.receiver, v.fate) for v in verdicts] == [(2, Fate.DELIVERED), (3, Fate.BELOW_THRESHOLD)]
+    assert [(v.receiver, v.status) for v in verdicts] == [
+        (2, DeliveryStatus.DELIVERED),
+        (3, DeliveryStatus.BELOW_THRESHOLD),
+    ]
 
 
 def test_broadcasts_of_hidden_robots_collide_for_good() -> None:
@@ -47,9 +50,9 @@ def test_broadcasts_of_hidden_robots_collide_for_good() -> None:
     mission.cuts = (Cut((1,), (3,)),)
     beacon = (message(BROADCAST, 100),)
     verdicts = mission.run(4, {1: beacon, 3: beacon})
-    assert sorted((v.source, v.fate, v.attempts) for v in verdicts if v.receiver == 2) == [
-        (1, Fate.RETRY_LIMIT, (1,)),
-        (3, Fate.RETRY_LIMIT, (1,)),
+    assert sorted((v.source, v.status, v.attempts) for v in verdicts if v.receiver == 2) == [
+        (1, DeliveryStatus.RETRY_LIMIT, (1,)),
+        (3, DeliveryStatus.RETRY_LIMIT, (1,)),
     ]
 
 
@@ -58,32 +61,32 @@ def test_broadcasts_of_robots_that_hear_each_other_take_turns() -> None:
     mission = Mission(line(3, 5.0), STILL)
     beacon = (message(BROADCAST, 100),)
     rounds = [mission.run(2, {1: beacon, 3: beacon}) for _ in range(100)]
-    collided = sum(v.fate is Fate.RETRY_LIMIT for r in rounds for v in r if v.receiver == 2)
+    collided = sum(v.status is DeliveryStatus.RETRY_LIMIT for r in rounds for v in r if v.receiver == 2)
     assert 0 < collided < 20
 
 
 def test_a_message_to_oneself_or_to_a_stranger_ends_at_once() -> None:
     verdicts = Mission(line(2, 5.0), STILL).run(1, {1: (message(1), message(77))})
-    assert [v.fate for v in verdicts] == [Fate.NO_ROUTE, Fate.RECEIVER_GONE]
+    assert [v.status for v in verdicts] == [DeliveryStatus.NO_ROUTE, DeliveryStatus.RECEIVER_GONE]
 
 
 def test_out_of_range_ends_below_the_threshold_after_all_retries() -> None:
     (verdict,) = Mission(line(2, 40.0), STILL).run(4, {1: (message(2),)})
-    assert (verdict.fate, verdict.attempts) == (Fate.BELOW_THRESHOLD, (7,))
+    assert (verdict.status, verdict.attempts) == (DeliveryStatus.BELOW_THRESHOLD, (7,))
 
 
 def test_queue_of_a_robot_that_left_ends_in_sender_gone() -> None:
     mission = Mission(line(3, 5.0), STILL)
     mission.step({1: tuple(message(2) for _ in range(9))})
     del mission.places[1]
-    assert {v.fate for v in mission.step()} == {Fate.SENDER_GONE}
+    assert {v.status for v in mission.step()} == {DeliveryStatus.SENDER_GONE}
 
 
 def test_frames_to_a_robot_that_left_end_in_receiver_gone() -> None:
     mission = Mission(line(3, 5.0), STILL)
     del mission.places[2]
     (verdict,) = mission.run(3, {1: (message(2),)})
-    assert verdict.fate is Fate.RECEIVER_GONE
+    assert verdict.status is DeliveryStatus.RECEIVER_GONE
 
 
 def test_a_restarted_robot_starts_with_an_empty_card() -> None:
@@ -91,13 +94,13 @@ def test_a_restarted_robot_starts_with_an_empty_card() -> None:
     mission.step({1: tuple(message(2) for _ in range(9))})
     mission.incarnations[1] = 1
     settled = mission.run(4)
-    assert [v.fate for v in settled] == [Fate.SENDER_GONE] * 3
+    assert [v.status for v in settled] == [DeliveryStatus.SENDER_GONE] * 3
 
 
 def test_a_full_queue_drops_the_newest() -> None:
     mission = Mission(line(2, 5.0), RadioSection(routing="direct", queue_frames=4))
     verdicts = mission.step({1: tuple(message(2) for _ in range(6))})
-    full = [v.message for v in verdicts if v.fate is Fate.QUEUE_FULL]
+    full = [v.message for v in verdicts if v.status is DeliveryStatus.QUEUE_FULL]
     assert full == [5, 6]
 
 
@@ -120,7 +123,10 @@ def test_a_fault_at_a_tick_holds_for_every_frame_that_begins_after_it() -> None:
         mission.step({1: tuple(message(2) for _ in range(8))})
         mission.cuts = (Cut((1,), (2,)),)
         for verdict in mission.run(12):
-            assert verdict.fate is not Fate.DELIVERED or verdict.arrival_ns - data_ns <= PERIOD + 100
+            assert (
+                verdict.status is not DeliveryStatus.DELIVERED
+                or verdict.arrival_ns - data_ns <= PERIOD + 100
+            )
 
 
 def test_what_a_relay_drops_before_it_acknowledges_has_a_verdict() -> None:
@@ -128,7 +134,7 @@ def test_what_a_relay_drops_before_it_acknowledges_has_a_verdict() -> None:
     mission.run(20, {1: (message(3),)})
     mission.incarnations[2] = 1
     (verdict,) = mission.run(3, {1: (message(3),)})
-    assert (verdict.fate, verdict.path) == (Fate.NO_ROUTE, (1, 2))
+    assert (verdict.status, verdict.path) == (DeliveryStatus.NO_ROUTE, (1, 2))
 
 
 def test_discovery_is_service_and_waiting_is_not() -> None:

@@ -11,7 +11,7 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from onehop.contracts.messages import BROADCAST, Cut, Fate, Jam, Transmission, Verdict
+from onehop.contracts.messages import BROADCAST, Cut, DeliveryStatus, Jam, Transmission, Verdict
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss
 from tests.radio.missions import PERIOD, Mission, Outboxes, message
@@ -91,8 +91,12 @@ class RadioMachine(RuleBasedStateMachine):
             self.settled.add(key)
             sent = self.offered[verdict.source, verdict.message]
             assert verdict.destination == sent.destination
-            assert (verdict.arrival_ns >= 0) == (verdict.fate is Fate.DELIVERED)
-        arrived = [v for v in verdicts if v.fate is Fate.DELIVERED and v.receiver in self.mission.places]
+            assert (verdict.arrival_ns >= 0) == (verdict.status is DeliveryStatus.DELIVERED)
+        arrived = [
+            v
+            for v in verdicts
+            if v.status is DeliveryStatus.DELIVERED and v.receiver in self.mission.places
+        ]
         got = [(i, r) for i, inbox in self.mission.inboxes.items() for r in inbox.receptions]
         assert len(got) == len(arrived)
         for robot, reception in got:

@@ -7,12 +7,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from onehop.contracts.arrays import FloatArray
 from onehop.contracts.sections import MapSection, RobotSection
-from world_server.core.grid import Frame, grid_map
+from onehop.maps.grid import GridFrame, grid_map
+from onehop.maps.map_file import load_map
+from onehop.maps.polygons import PolygonGround
+from onehop.maps.walls import WallMap, segment_distances
 from world_server.core.laser import _SLACK, Laser, _direction
-from world_server.core.mapfile import load_map
-from world_server.core.polygons import PolygonGround
-from world_server.core.walls import FloatArray, WallMap, segment_distances
 
 BODY = RobotSection()
 LOOK = np.array([0], dtype=np.int32)
@@ -134,7 +135,7 @@ def test_no_beam_slips_through_the_corner_of_a_block() -> None:
 def test_no_beam_leaves_a_closed_room_of_cells() -> None:
     filled = np.zeros((12, 12), dtype=np.bool_)
     filled[::3, ::3] = True
-    room = grid_map(filled, Frame(0.0, 0.0, 0.3, 0.5))
+    room = grid_map(filled, GridFrame(0.0, 0.0, 0.3, 0.5))
     body = RobotSection(laser_range=100.0, laser_fov_deg=270.0, laser_beams=271)
     laser = Laser(room, body)
     random = np.random.default_rng(5)

@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onehop.contracts.arrays import FloatArray
 from onehop.contracts.sections import MapSection, RobotSection
-from world_server.core.mapfile import load_map
+from onehop.maps.map_file import load_map
+from onehop.maps.walls import WallMap
 from world_server.core.motion import NOBODY, WALL, Motion
-from world_server.core.walls import FloatArray, WallMap
 
 BODY = RobotSection()
 PERIOD_NS = 50_000_000

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import GoalSection, MapSection, StartSection, TeamSection
-from world_server.core.mapfile import load_map
+from onehop.maps.map_file import load_map
 from world_server.core.placement import start_poses
 
 WALL = ((20.0, 0.0), (20.5, 0.0), (20.5, 36.0), (20.0, 36.0))

@@ -3,11 +3,11 @@
 import pytest
 
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.messages import Lost, Note, Outcome, Presence, Reign
+from onehop.contracts.messages import LeadershipTerm, Lost, Note, Outcome, Presence
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import ClockSection, GoalSection, MapSection, TeamSection
 from onehop.contracts.team import Mode, Shape, Status
-from world_server.core.referee import Referee, Scene
+from world_server.core.referee import Referee, TickSummary
 
 TEAM = (1, 2, 3)
 PLAN = Scenario(
@@ -28,18 +28,18 @@ def status(
 def scene(
     tick: int, places: dict[int, tuple[float, float]], statuses: dict[int, Status], v: float = 0.0,
     waiting: frozenset[int] = frozenset(), collisions: int = 0,
-) -> Scene:  # fmt: skip
+) -> TickSummary:  # fmt: skip
     present = tuple(
         Presence(robot, 0, Pose(*places[robot], 0.0), Twist(v, 0.0), False) for robot in sorted(places)
     )
-    return Scene(tick, tick * PERIOD_NS, present, statuses, waiting, collisions)
+    return TickSummary(tick, tick * PERIOD_NS, present, statuses, waiting, collisions)
 
 
 def all_stopped(**kwargs: object) -> dict[int, Status]:
     return {robot: status(**kwargs) for robot in TEAM}  # type: ignore[arg-type]
 
 
-def judge(referee: Referee, *scenes: Scene, hope: bool = False) -> Outcome | None:
+def judge(referee: Referee, *scenes: TickSummary, hope: bool = False) -> Outcome | None:
     verdict = None
     for one in scenes:
         assert verdict is None, "the referee went on after its verdict"
@@ -207,10 +207,10 @@ def test_leaders_are_listed_from_the_moment_they_act_as_such() -> None:
         referee.judge(scene(tick, AT_GOAL, words, 1.0), False)
     leaders = referee.close("aborted", "", scene(9, {}, {})).leaders
     assert leaders == (
-        Reign(0.0, 2, 1, TEAM, "wedge"),
-        Reign(0.1, 2, 2, (2, 3), "column"),
-        Reign(0.15, 3, 3, TEAM, "wedge"),
-        Reign(0.2, 2, 2, (2, 3), "column"),
+        LeadershipTerm(0.0, 2, 1, TEAM, "wedge"),
+        LeadershipTerm(0.1, 2, 2, (2, 3), "column"),
+        LeadershipTerm(0.15, 3, 3, TEAM, "wedge"),
+        LeadershipTerm(0.2, 2, 2, (2, 3), "column"),
     )
 
 

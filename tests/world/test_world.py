@@ -17,7 +17,7 @@ from onehop.contracts.sections import (  # fmt: skip
     TeamSection,
 )
 from onehop.contracts.team import Mode, Shape, Status
-from world_server.core.mapfile import load_map
+from onehop.maps.map_file import load_map
 from world_server.core.world import World
 
 BLOCK = ((14.0, 4.0), (16.0, 4.0), (16.0, 16.0), (14.0, 16.0))
@@ -69,7 +69,9 @@ def test_the_first_truth_shows_the_start() -> None:
         (2, 4.0, 6.0, 0),
         (3, 4.0, 14.0, 0),
     ]
-    assert truth.offers == truth.contacts == truth.departures == truth.cuts == truth.jams == ()
+    assert (
+        truth.transmit_requests == truth.contacts == truth.departures == truth.cuts == truth.jams == ()
+    )
 
 
 def test_a_tick_moves_robots_by_their_commands() -> None:
@@ -100,7 +102,7 @@ def test_a_robot_without_an_action_stands_still_and_offers_nothing() -> None:
     ground.advance({2: action(1.0)})
     truth = ground.truth()
     assert truth.present[0].twist == Twist(0.0, 0.0)
-    assert [offer.robot for offer in truth.offers] == [2]
+    assert [offer.robot for offer in truth.transmit_requests] == [2]
 
 
 def test_observations_are_what_truth_says_and_scans_cannot_be_written() -> None:
@@ -122,13 +124,13 @@ def test_what_was_offered_comes_with_the_next_truth_only() -> None:
     ground = world()
     frame = Transmission(2, b"hello", 800)
     ground.advance({1: action(outbox=(frame,)), 2: action()})
-    offers = ground.truth().offers
-    assert [(offer.robot, offer.outbox, offer.remaining_distance) for offer in offers] == [
+    requests = ground.truth().transmit_requests
+    assert [(one.robot, one.outbox, one.remaining_distance) for one in requests] == [
         (1, (frame,), 5.0),
         (2, (), 5.0),
     ]
     ground.advance({})
-    assert ground.truth().offers == ()
+    assert ground.truth().transmit_requests == ()
 
 
 def test_truth_is_the_same_until_the_next_tick() -> None:
@@ -148,7 +150,7 @@ def test_a_fenced_robot_departs_once_and_its_last_words_are_not_offered() -> Non
     ground.advance({1: action(), 2: action(3.0), 3: action()})
     truth = ground.truth()
     assert truth.departures == (Departure(2, "its process died"),)
-    assert [offer.robot for offer in truth.offers] == [1, 3]
+    assert [offer.robot for offer in truth.transmit_requests] == [1, 3]
     assert list(ground.observe()) == [1, 3]
     ground.advance({})
     assert ground.truth().departures == ()
@@ -186,7 +188,7 @@ def test_what_a_robot_offered_before_it_was_restarted_is_lost() -> None:
     ground.fence(2, "died")
     ground.admit(2)
     truth = ground.truth()
-    assert [offer.robot for offer in truth.offers] == [1]
+    assert [offer.robot for offer in truth.transmit_requests] == [1]
     assert (truth.present[1].robot, truth.present[1].twist) == (2, Twist(0.0, 0.0))
 
 

@@ -11,7 +11,8 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
-from world_server.core.walls import Bounds, FloatArray
+from onehop.contracts.arrays import FloatArray
+from onehop.maps.walls import Bounds
 
 IntArray: TypeAlias = npt.NDArray[np.int32]
 

@@ -2,9 +2,9 @@
 
 import math
 
+from onehop.contracts.arrays import FloatArray
 from onehop.contracts.messages import Contact
 from world_server.core.motion import NOBODY, WALL, Motion, Rows
-from world_server.core.walls import FloatArray
 
 _RELEASE = 0.02
 """Gap that ends a touch [m]: a robot that trembles at a wall touches it once."""

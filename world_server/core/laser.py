@@ -14,10 +14,11 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts.arrays import FloatArray
 from onehop.contracts.sections import RobotSection
+from onehop.maps.walls import WallMap
 from world_server.core.cells import CellList, IntArray, cell_at, cell_list
 from world_server.core.turning import direction
-from world_server.core.walls import FloatArray, WallMap
 
 Scans: TypeAlias = npt.NDArray[np.float32]
 

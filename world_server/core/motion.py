@@ -18,11 +18,12 @@ import numba
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts.arrays import BoolArray, FloatArray
 from onehop.contracts.geometry import TAU
 from onehop.contracts.sections import RobotSection
+from onehop.maps.walls import WallMap
 from world_server.core.cells import CellList, cell_at, cell_list, point_gap
 from world_server.core.turning import direction
-from world_server.core.walls import BoolArray, FloatArray, WallMap
 
 WALL = -1
 """Stands for "an obstacle" where the row of another robot could stand."""

@@ -8,10 +8,11 @@ import math
 import numpy as np
 
 from onehop.contracts import elementary
+from onehop.contracts.arrays import FloatArray
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario
-from world_server.core.walls import FloatArray, WallMap
+from onehop.maps.walls import WallMap
 
 _GAP = 0.2
 """Distance beyond touching inflation zones that random starts keep from each other [m]."""

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from onehop.contracts.geometry import Pose
-from onehop.contracts.messages import Lost, Note, Outcome, Presence, Reign
+from onehop.contracts.messages import LeadershipTerm, Lost, Note, Outcome, Presence
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.team import Mode, Shape, Status
 
@@ -24,7 +24,7 @@ _MARGIN = 0.1
 """What a robot may stand beyond the goal's tolerance, for the last tick of its braking [m]."""
 
 
-class Scene(NamedTuple):
+class TickSummary(NamedTuple):
     """What the referee looks at after a tick.
 
     statuses: the last word of those who have said any. waiting: robots held by a fault that will end by
@@ -53,7 +53,7 @@ class Referee:
         self._robots = scenario.team.robots
         self._limit_ns = round(scenario.clock.limit_s * 1e9)
         self._moved_ns = 0
-        self._reigns: list[Reign] = []
+        self._reigns: list[LeadershipTerm] = []
         self._crowned: dict[int, Status] = {}
         self._departed: dict[int, Lost] = {}
         self._last_words: dict[int, str] = {}
@@ -73,13 +73,13 @@ class Referee:
             if note.kind != "mode":
                 self._last_words[robot] = note.kind.replace("_", " ")
 
-    def judge(self, scene: Scene, hope: bool) -> Outcome | None:
+    def judge(self, scene: TickSummary, hope: bool) -> Outcome | None:
         """The outcome, if the mission has one by now. hope: somebody will yet be restarted."""
         self._watch(scene)
         verdict = self._verdict(scene, hope)
         return None if verdict is None else self.close(*verdict, scene)
 
-    def close(self, outcome: str, reason: str, scene: Scene) -> Outcome:
+    def close(self, outcome: str, reason: str, scene: TickSummary) -> Outcome:
         """The final account, whatever ended the mission."""
         arrived = self._arrived(scene) if outcome == "arrived" else ()
         return Outcome(
@@ -93,7 +93,7 @@ class Referee:
             collisions=scene.collisions,
         )
 
-    def _watch(self, scene: Scene) -> None:
+    def _watch(self, scene: TickSummary) -> None:
         """Note who moves, and who begins to act as a leader with which roster."""
         for one in scene.present:
             robot = one.robot
@@ -107,7 +107,7 @@ class Referee:
             self._crowned[robot] = status
             if before is None or _roster(before) != _roster(status):
                 self._reigns.append(
-                    Reign(
+                    LeadershipTerm(
                         at_s=scene.time_ns / 1e9,
                         leader=robot,
                         epoch=status.epoch,
@@ -116,7 +116,7 @@ class Referee:
                     )
                 )
 
-    def _verdict(self, scene: Scene, hope: bool) -> tuple[str, str] | None:
+    def _verdict(self, scene: TickSummary, hope: bool) -> tuple[str, str] | None:
         if not scene.present:
             return None if hope else ("failed", "no robot is left")
         if scene.time_ns >= self._limit_ns:
@@ -133,11 +133,11 @@ class Referee:
             return "failed", self._stop_reason(scene)
         return None
 
-    def _arrival(self, scene: Scene) -> str:
+    def _arrival(self, scene: TickSummary) -> str:
         leaders = ", ".join(str(robot) for robot in self._leaders_at_goal(scene))
         return f"robot {leaders} at the goal with {len(self._arrived(scene))} of {len(self._robots)}"
 
-    def _stop_reason(self, scene: Scene) -> str:
+    def _stop_reason(self, scene: TickSummary) -> str:
         """Why nobody drives any more, in the words of those who lead."""
         words = [
             f"robot {one.robot}: {self._last_words[one.robot]}"
@@ -149,7 +149,7 @@ class Referee:
     def _from_goal(self, pose: Pose) -> float:
         return math.hypot(pose.x - self._goal.x, pose.y - self._goal.y)
 
-    def _leaders_at_goal(self, scene: Scene) -> list[int]:
+    def _leaders_at_goal(self, scene: TickSummary) -> list[int]:
         reach = self._goal.tolerance + _MARGIN
         return [
             one.robot
@@ -157,7 +157,7 @@ class Referee:
             if one.robot in self._crowned and self._from_goal(one.pose) <= reach
         ]
 
-    def _arrived(self, scene: Scene) -> tuple[int, ...]:
+    def _arrived(self, scene: TickSummary) -> tuple[int, ...]:
         """Ids of those who obey a leader at the goal, are on its roster and within its formation."""
         arrived: list[int] = []
         for leader in self._leaders_at_goal(scene):
@@ -170,7 +170,7 @@ class Referee:
                     arrived.append(one.robot)
         return tuple(sorted(arrived))
 
-    def _loss(self, robot: int, scene: Scene) -> Lost:
+    def _loss(self, robot: int, scene: TickSummary) -> Lost:
         if robot in self._departed:
             return self._departed[robot]
         leaders = self._leaders_at_goal(scene) or [reign.leader for reign in self._reigns[-1:]]

@@ -16,21 +16,21 @@ from onehop.contracts.messages import (
     Contact,
     Departure,
     Observation,
-    Offer,
     Outcome,
     Presence,
+    TransmitRequest,
     Truth,
 )
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import FaultSection
 from onehop.contracts.team import Status
+from onehop.maps.walls import WallMap
 from world_server.core.contacts import Touches
 from world_server.core.faults import Faults
 from world_server.core.laser import Laser
 from world_server.core.motion import Motion
 from world_server.core.placement import start_poses
-from world_server.core.referee import Referee, Scene
-from world_server.core.walls import WallMap
+from world_server.core.referee import Referee, TickSummary
 
 KILLED = "killed (scenario)"
 RESTARTED = "restarted (scenario)"
@@ -57,7 +57,7 @@ class World:
         self._incarnation = dict.fromkeys(self._robots, 0)
         self._present = dict.fromkeys(self._robots, True)
         self._statuses: dict[int, Status] = {}
-        self._offers: dict[int, Offer] = {}
+        self._offers: dict[int, TransmitRequest] = {}
         self._departures: list[Departure] = []
         self._contacts: tuple[Contact, ...] = ()
         self._collisions = 0
@@ -88,7 +88,7 @@ class World:
                 tick=self.tick,
                 time_ns=self.time_ns,
                 present=present,
-                offers=tuple([offers[one.robot] for one in present if one.robot in offers]),
+                transmit_requests=tuple([offers[one.robot] for one in present if one.robot in offers]),
                 cuts=self._faults.cuts,
                 jams=self._faults.jams,
                 contacts=self._contacts,
@@ -191,7 +191,9 @@ class World:
                 or action.incarnation != self._incarnation[robot]
             ):
                 continue
-            self._offers[robot] = Offer(robot, action.speed, action.remaining_distance, action.outbox)
+            self._offers[robot] = TransmitRequest(
+                robot, action.speed, action.remaining_distance, action.outbox
+            )
             self._statuses[robot] = action.status
             if action.notes:
                 self._referee.on_notes(robot, action.notes)
@@ -223,8 +225,8 @@ class World:
             )
         return self._present_now
 
-    def _scene(self) -> Scene:
-        return Scene(
+    def _scene(self) -> TickSummary:
+        return TickSummary(
             self.tick,
             self.time_ns,
             self._presences(),

@@ -10,7 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from onehop.analysis.palette import BAD, FAINT, INK
-from onehop.analysis.report.material import Material
+from onehop.analysis.report.report_data import ReportData
 
 DPI = 110
 """Resolution of the PNG files: 10 inches are 1100 pixels."""
@@ -54,7 +54,7 @@ def save(figure: Figure, folder: Path, stem: str) -> Path:
     return path
 
 
-def mark_turns(axes: Axes, material: Material, named: bool = False) -> None:
+def mark_turns(axes: Axes, material: ReportData, named: bool = False) -> None:
     """Lines where robots left and where the lead passed on, and red shade while a fault was in force."""
     for span in material.faults:
         axes.axvspan(span.start_s, span.end_s, color="#F3E3E3", linewidth=0, zorder=0)

@@ -10,9 +10,9 @@ from matplotlib.lines import Line2D
 
 from onehop.analysis.palette import BAD, INK
 from onehop.analysis.report.canvas import mark_turns
-from onehop.analysis.report.material import Material
+from onehop.analysis.report.report_data import ReportData
 from onehop.analysis.tables import Table
-from robot_agent.core.messages import Command
+from robot_agent.core.team.team_messages import Command
 
 Series = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]
 """Times [s] and values."""
@@ -26,9 +26,9 @@ BER_FLOOR = 1e-9
 _GRID_S = 0.5
 
 
-def follower_chart(material: Material) -> Figure:
+def follower_chart(material: ReportData) -> Figure:
     """Six panels over one time axis."""
-    panels: tuple[tuple[str, Callable[[Material, int], Series], bool], ...] = (
+    panels: tuple[tuple[str, Callable[[ReportData, int], Series], bool], ...] = (
         ("distance to\nleader [m]", leader_distance, False),
         ("throughput\n[kb/s]", throughput, True),
         ("k_rho [1/s]", k_rho, False),
@@ -89,12 +89,12 @@ def rolling_mean(
     return np.where(known, mean, np.nan)
 
 
-def _stride(material: Material) -> int:
+def _stride(material: ReportData) -> int:
     """Ticks between two steps of the figure."""
     return max(1, round(_GRID_S / material.period_s))
 
 
-def _following(material: Material, robot: int) -> Table:
+def _following(material: ReportData, robot: int) -> Table:
     """Status of a robot while it obeys another one, at the steps of the figure."""
     own = material.tables["status"].of(robot)
     own = own.where(own["tick"] % _stride(material) == 0)
@@ -107,7 +107,7 @@ def _gapped(times: npt.NDArray[np.float64], values: npt.NDArray[np.float64], gap
     return np.insert(times, jumps, times[jumps] - 1e-6), np.insert(values, jumps, np.nan)
 
 
-def leader_distance(material: Material, robot: int) -> Series:
+def leader_distance(material: ReportData, robot: int) -> Series:
     """To the leader that the robot obeys, from ground truth [m]."""
     own, poses = _following(material, robot), material.tables["poses"]
     poses = poses.where(poses["tick"] % _stride(material) == 0)
@@ -127,35 +127,35 @@ def leader_distance(material: Material, robot: int) -> Series:
     return _gapped(times, np.hypot(x[mine] - x[theirs], y[mine] - y[theirs]), 2 * _GRID_S)
 
 
-def throughput(material: Material, robot: int) -> Series:
+def throughput(material: ReportData, robot: int) -> Series:
     """As the robot measured it on Next [kb/s]; 0 when that Next is missing."""
     own = _following(material, robot)
     return _gapped(own["time_s"], own["throughput_bps"] / 1e3, 2 * _GRID_S)
 
 
-def k_rho(material: Material, robot: int) -> Series:
+def k_rho(material: ReportData, robot: int) -> Series:
     """Gain in force [1/s]."""
     own = _following(material, robot)
     return _gapped(own["time_s"], own["k_rho"], 2 * _GRID_S)
 
 
-def formation_error(material: Material, robot: int) -> Series:
+def formation_error(material: ReportData, robot: int) -> Series:
     """Distance to its slot, as the robot sees it [m]."""
     own = _following(material, robot)
     return _gapped(own["time_s"], own["error"], 2 * _GRID_S)
 
 
-def snr(material: Material, robot: int) -> Series:
+def snr(material: ReportData, robot: int) -> Series:
     """Of each Next that came [dB]."""
     return _of_next(material, robot, lambda frame: frame.snr_db)
 
 
-def bit_errors(material: Material, robot: int) -> Series:
+def bit_errors(material: ReportData, robot: int) -> Series:
     """Of each Next that came, at least BER_FLOOR."""
     return _of_next(material, robot, lambda frame: max(frame.bit_error_rate, BER_FLOOR))
 
 
-def _of_next(material: Material, robot: int, value: Callable[..., float]) -> Series:
+def _of_next(material: ReportData, robot: int, value: Callable[..., float]) -> Series:
     period = material.log.scenario.team.next_period
     chosen = [
         (frame.arrival_s, value(frame))
@@ -168,7 +168,7 @@ def _of_next(material: Material, robot: int, value: Callable[..., float]) -> Ser
     return _gapped(times, values, 2.5 * period)
 
 
-def _draw_threshold(axes: Axes, material: Material) -> None:
+def _draw_threshold(axes: Axes, material: ReportData) -> None:
     status = material.tables["status"]
     followers = status["leader"] != status["robot"]
     thresholds = np.unique(status["threshold_bps"][followers & (status["threshold_bps"] > 0)])
@@ -181,7 +181,7 @@ def _draw_threshold(axes: Axes, material: Material) -> None:
         )  # fmt: skip
 
 
-def _draw_legend(figure: Figure, material: Material) -> None:
+def _draw_legend(figure: Figure, material: ReportData) -> None:
     handles = []
     for robot, colour in material.colours.items():
         dead = material.dead.get(robot)

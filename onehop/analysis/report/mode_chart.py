@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from onehop.analysis.palette import BAD, FAINT, INK
-from onehop.analysis.report.material import Material
+from onehop.analysis.report.report_data import ReportData
 from onehop.analysis.timeline import Span, spans
 from onehop.contracts.team import Mode
 
@@ -34,7 +34,7 @@ _ALARM = {Mode.LOST_LEADER: ("#F4A6A0", "lost leader"), Mode.JOINING: ("#F6D776"
 """Modes without a leader have a colour of their own."""
 
 
-def mode_chart(material: Material) -> Figure:
+def mode_chart(material: ReportData) -> Figure:
     """The figure; one row a robot, above them leader, shape and faults."""
     rows = len(material.robots)
     lanes = _lanes(material.faults)
@@ -75,7 +75,7 @@ def _lanes(faults: list[Span]) -> list[list[Span]]:
     return lanes
 
 
-def _draw_modes(axes: Axes, material: Material, robot: int, row: int, seen: set[str]) -> None:
+def _draw_modes(axes: Axes, material: ReportData, robot: int, row: int, seen: set[str]) -> None:
     own = material.tables["status"].of(robot)
     colour = material.colours[robot]
     by_mode: dict[str, list[tuple[float, float]]] = {}
@@ -98,7 +98,7 @@ def _look(mode: str, colour: str) -> tuple[tuple[float, float, float, float], st
     return to_rgba(colour, opacity), hatch
 
 
-def _draw_reigns(axes: Axes, material: Material, rows: int) -> None:
+def _draw_reigns(axes: Axes, material: ReportData, rows: int) -> None:
     reigns = material.line
     ends = [*(reign.at_s for reign in reigns[1:]), material.end_s] if reigns else []
     times = np.array([reign.at_s for reign in reigns])
@@ -132,7 +132,7 @@ def _draw_band(axes: Axes, span: Span, row: float, face: str, ink: str) -> None:
     )  # fmt: skip
 
 
-def _label(axes: Axes, material: Material, rows: int, top: int) -> None:
+def _label(axes: Axes, material: ReportData, rows: int, top: int) -> None:
     names = [f"robot {robot}" for robot in reversed(material.robots)]
     names += ["leader", "shape", *["faults"] * (top - 2)]
     axes.set_yticks(range(rows + top), names)
@@ -152,7 +152,7 @@ def _label(axes: Axes, material: Material, rows: int, top: int) -> None:
     axes.tick_params(axis="y", length=0)
 
 
-def _explain_looks(figure: Figure, material: Material, seen: set[str]) -> None:
+def _explain_looks(figure: Figure, material: ReportData, seen: set[str]) -> None:
     colour = "#777777"
     handles = []
     for mode, (_, _, name) in _LOOKS.items():

@@ -14,13 +14,13 @@ from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, GOOD
 from onehop.analysis.report.canvas import save, styled
 from onehop.analysis.report.follower_chart import follower_chart
-from onehop.analysis.report.material import Material, gather
 from onehop.analysis.report.mode_chart import mode_chart
+from onehop.analysis.report.narrative import NarrativeEvent, narrative, summary_sentence
 from onehop.analysis.report.radio_chart import losses, radio_chart
+from onehop.analysis.report.report_data import ReportData, gather
 from onehop.analysis.report.sequence_chart import MAX_CHARTS, elections, sequence_chart
-from onehop.analysis.report.story import Event, story, summary_sentence
 from onehop.analysis.trajectory import figure_of
-from onehop.drive.codec import as_map
+from onehop.wire.codec import as_map
 
 _CSS = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
 
@@ -62,7 +62,7 @@ def write_report(log: Log, folder: Path) -> Written:
     return Written(page, tuple(picture.path for picture in pictures))
 
 
-def _pictures(material: Material, folder: Path) -> Iterator[_Picture]:
+def _pictures(material: ReportData, folder: Path) -> Iterator[_Picture]:
     yield _Picture(
         "Who did what when",
         "The upper rows say who led, in which shape, and which faults were in force. Below, every "
@@ -97,7 +97,7 @@ def _pictures(material: Material, folder: Path) -> Iterator[_Picture]:
     )
 
 
-def _page(material: Material, pictures: list[_Picture]) -> str:
+def _page(material: ReportData, pictures: list[_Picture]) -> str:
     scenario, summary = material.log.scenario, material.log.summary
     outcome = summary["outcome"] if summary else "unfinished"
     colour = GOOD if outcome == "arrived" else BAD
@@ -111,7 +111,7 @@ def _page(material: Material, pictures: list[_Picture]) -> str:
 <span class="outcome" style="background:{colour}">{outcome}</span></h1>
 <p class="lead">{html.escape(summary_sentence(material))}</p>
 <h2>What happened</h2>
-{_story_table(story(material))}
+{_story_table(narrative(material))}
 <h2>The team</h2>
 {_team_table(material)}
 {sections}
@@ -141,7 +141,7 @@ def _section(picture: _Picture) -> str:
     )
 
 
-def _story_table(events: list[Event]) -> str:
+def _story_table(events: list[NarrativeEvent]) -> str:
     rows = "".join(
         f'<tr class="{"turn" if event.weight > 1 else ""}"><td class="time">{event.at_s:.1f} s</td>'
         f'<td class="text">{html.escape(event.text)}</td></tr>'
@@ -150,7 +150,7 @@ def _story_table(events: list[Event]) -> str:
     return f"<table>{rows}</table>"
 
 
-def _team_table(material: Material) -> str:
+def _team_table(material: ReportData) -> str:
     rows = "".join(_team_row(material, robot) for robot in material.robots)
     heads = "".join(
         f'<th class="{kind}">{name}</th>'
@@ -162,7 +162,7 @@ def _team_table(material: Material) -> str:
     return f"<table><tr>{heads}</tr>{rows}</table>"
 
 
-def _team_row(material: Material, robot: int) -> str:
+def _team_row(material: ReportData, robot: int) -> str:
     own = material.tables["status"].of(robot)
     poses = material.tables["poses"].of(robot)
     dead = robot in material.dead
@@ -191,7 +191,7 @@ def _team_row(material: Material, robot: int) -> str:
     )
 
 
-def _fate(material: Material, robot: int) -> str:
+def _fate(material: ReportData, robot: int) -> str:
     summary = material.log.summary
     if summary is not None:
         if robot in summary["arrived"]:
@@ -204,7 +204,7 @@ def _fate(material: Material, robot: int) -> str:
     return f"{dead.why} at {dead.at_s:.0f} s" if dead else "on its way when the log ends"
 
 
-def _run_table(material: Material) -> str:
+def _run_table(material: ReportData) -> str:
     log, summary = material.log, material.log.summary or {}
     rows = {
         "scenario": f"{log.scenario.name}, seed {log.scenario.seed}",

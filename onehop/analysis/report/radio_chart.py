@@ -7,21 +7,21 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from onehop.analysis.palette import FAINT, INK, OKABE_ITO
-from onehop.analysis.report.material import Material
-from onehop.contracts.messages import Fate
+from onehop.analysis.report.report_data import ReportData
+from onehop.contracts.messages import DeliveryStatus
 
 _FATES = {
-    Fate.BELOW_THRESHOLD: "#D55E00",
-    Fate.BIT_ERRORS: "#E69F00",
-    Fate.RETRY_LIMIT: "#CC79A7",
-    Fate.NO_ROUTE: "#56B4E9",
-    Fate.QUEUE_FULL: "#B8A800",
-    Fate.RECEIVER_GONE: "#5B5B5B",
-    Fate.SENDER_GONE: "#A5A5A5",
+    DeliveryStatus.BELOW_THRESHOLD: "#D55E00",
+    DeliveryStatus.BIT_ERRORS: "#E69F00",
+    DeliveryStatus.RETRY_LIMIT: "#CC79A7",
+    DeliveryStatus.NO_ROUTE: "#56B4E9",
+    DeliveryStatus.QUEUE_FULL: "#B8A800",
+    DeliveryStatus.RECEIVER_GONE: "#5B5B5B",
+    DeliveryStatus.SENDER_GONE: "#A5A5A5",
 }
 
 
-def radio_chart(material: Material) -> Figure:
+def radio_chart(material: ReportData) -> Figure:
     """Two panels: losses by reason and receiver; bytes on the air over time by kind."""
     figure = Figure(figsize=(10.0, 3.1))
     left, right = figure.subplots(1, 2)
@@ -31,16 +31,16 @@ def radio_chart(material: Material) -> Figure:
     return figure
 
 
-def losses(material: Material) -> dict[int, Counter[str]]:
+def losses(material: ReportData) -> dict[int, Counter[str]]:
     """Lost messages by receiver and reason."""
     found: dict[int, Counter[str]] = {robot: Counter() for robot in material.robots}
     for frame in material.frames:
         if not frame.delivered and frame.receiver in found:
-            found[frame.receiver][frame.fate] += 1
+            found[frame.receiver][frame.status] += 1
     return found
 
 
-def _draw_losses(axes: Axes, material: Material) -> None:
+def _draw_losses(axes: Axes, material: ReportData) -> None:
     found = losses(material)
     names = [str(robot) for robot in material.robots]
     base = np.zeros(len(names))
@@ -74,7 +74,7 @@ def _draw_losses(axes: Axes, material: Material) -> None:
         axes.set_title("no message was lost", loc="left", fontsize=9)
 
 
-def _draw_bytes(axes: Axes, material: Material) -> None:
+def _draw_bytes(axes: Axes, material: ReportData) -> None:
     """Cumulative bytes: the team's own messages, and each kind of routing message."""
     verdicts, control = material.tables["verdicts"], material.tables["control"]
     first = _first_of_each(verdicts["source"], verdicts["message"])

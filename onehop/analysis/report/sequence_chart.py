@@ -12,10 +12,10 @@ from typing import Any
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from onehop.analysis.frames import Frame
+from onehop.analysis.message_traces import MessageTrace
 from onehop.analysis.palette import BAD, INK
-from onehop.analysis.report.material import Material
-from onehop.contracts.messages import Reign
+from onehop.analysis.report.report_data import ReportData
+from onehop.contracts.messages import LeadershipTerm
 
 MAX_CHARTS = 3
 """Elections drawn at most; the rest is in the story."""
@@ -33,11 +33,11 @@ class _Row:
     """One line of the diagram: a message, its copies in a broadcast, or something that a robot notes."""
 
     at_s: float
-    frames: list[Frame] = field(default_factory=list)
+    frames: list[MessageTrace] = field(default_factory=list)
     notes: list[tuple[int, str, str]] = field(default_factory=list)
 
 
-def elections(material: Material) -> list[tuple[Reign, Reign]]:
+def elections(material: ReportData) -> list[tuple[LeadershipTerm, LeadershipTerm]]:
     """Each change of who leads most of the team: (last roster of the old leader, first of the new)."""
     return [
         (before, after)
@@ -46,7 +46,7 @@ def elections(material: Material) -> list[tuple[Reign, Reign]]:
     ]
 
 
-def sequence_chart(material: Material, before: Reign, after: Reign) -> Figure:
+def sequence_chart(material: ReportData, before: LeadershipTerm, after: LeadershipTerm) -> Figure:
     """From the old leader's last word to the new leader's first acknowledgements."""
     rows = _rows(material, before, after)[:MAX_ROWS]
     height = 0.7 + 0.235 * (len(rows) + len(_silences(rows)))
@@ -72,7 +72,7 @@ def sequence_chart(material: Material, before: Reign, after: Reign) -> Figure:
     return figure
 
 
-def _rows(material: Material, before: Reign, after: Reign) -> list[_Row]:
+def _rows(material: ReportData, before: LeadershipTerm, after: LeadershipTerm) -> list[_Row]:
     start_s, end_s = _window(material, before, after)
     rows: dict[tuple[float, int, int], _Row] = {}
     for frame in material.frames:
@@ -95,7 +95,7 @@ def _arrival(row: _Row) -> float:
     return min(times, default=row.at_s + 1.0)
 
 
-def _window(material: Material, before: Reign, after: Reign) -> tuple[float, float]:
+def _window(material: ReportData, before: LeadershipTerm, after: LeadershipTerm) -> tuple[float, float]:
     """From the last command of the old leader that anybody heard."""
     spoken = [
         frame.offered_s
@@ -106,7 +106,7 @@ def _window(material: Material, before: Reign, after: Reign) -> tuple[float, flo
     return max(spoken, default=after.at_s - 2.0) - 1e-6, after.at_s + AFTER_S
 
 
-def _noted(material: Material, start_s: float, end_s: float) -> Iterator[tuple[float, int, str, str]]:
+def _noted(material: ReportData, start_s: float, end_s: float) -> Iterator[tuple[float, int, str, str]]:
     for one in material.gone:
         if start_s <= one.at_s <= end_s:
             yield one.at_s, one.robot, one.why, BAD
@@ -146,7 +146,7 @@ def _silences(rows: list[_Row]) -> dict[int, float]:
     }
 
 
-def _draw_rows(axes: Axes, material: Material, rows: list[_Row], places: dict[int, float]) -> float:
+def _draw_rows(axes: Axes, material: ReportData, rows: list[_Row], places: dict[int, float]) -> float:
     silences = _silences(rows)
     y, said_s = 0.0, -1.0
     for number, row in enumerate(rows):
@@ -175,7 +175,7 @@ def _draw_rows(axes: Axes, material: Material, rows: list[_Row], places: dict[in
 
 
 def _draw_frame(
-    axes: Axes, frame: Frame, y: float, places: dict[int, float], colours: dict[int, str]
+    axes: Axes, frame: MessageTrace, y: float, places: dict[int, float], colours: dict[int, str]
 ) -> None:
     start, end = places[frame.source], places[frame.receiver]
     colour = colours[frame.source] if frame.delivered else BAD
@@ -193,7 +193,7 @@ def _draw_frame(
         axes.plot(end, y, marker="x", color=BAD, markersize=6, markeredgewidth=1.6, zorder=4)
 
 
-def _name_frame(axes: Axes, frames: list[Frame], y: float, places: dict[int, float]) -> None:
+def _name_frame(axes: Axes, frames: list[MessageTrace], y: float, places: dict[int, float]) -> None:
     """The name of the message near its sender, and the reason if it was lost."""
     first = frames[0]
     start, end = places[first.source], places[first.receiver]
@@ -201,7 +201,7 @@ def _name_frame(axes: Axes, frames: list[Frame], y: float, places: dict[int, flo
     reason = (
         ""
         if not lost
-        else f": {lost[0].fate}" + (f", {len(lost)} of {len(frames)}" if first.broadcast else "")
+        else f": {lost[0].status}" + (f", {len(lost)} of {len(frames)}" if first.broadcast else "")
     )
     text = f"{first.kind}{' to all' if first.broadcast else ''}{reason}"
     side = 1 if end > start else -1
@@ -212,7 +212,7 @@ def _name_frame(axes: Axes, frames: list[Frame], y: float, places: dict[int, flo
     )  # fmt: skip
 
 
-def _death_row(material: Material, rows: list[_Row], robot: int) -> float | None:
+def _death_row(material: ReportData, rows: list[_Row], robot: int) -> float | None:
     """Where the lifeline of a robot that is gone ends."""
     silences = _silences(rows)
     y = 0.0

@@ -25,8 +25,8 @@ from onehop.analysis.view.schemas import schema_of
 from onehop.contracts import topics
 from onehop.contracts.geometry import Pose
 from onehop.contracts.topics import robot_name
-from onehop.drive.log_writer import LOG_EPOCH_NS
-from world_server.core.mapfile import load_map
+from onehop.maps.map_file import load_map
+from onehop.wire.log_writer import LOG_EPOCH_NS
 
 POSE_S, SCAN_S, LINK_S, BODY_S = 0.1, 0.2, 0.5, 5.0
 """Simulated time between two messages of a kind [s]. A body moves with its frame; it is sent again for

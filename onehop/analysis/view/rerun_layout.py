@@ -7,7 +7,7 @@ from typing import Any
 from onehop.analysis.log import Log
 from onehop.analysis.palette import rgb, robot_colours
 from onehop.contracts.topics import robot_name
-from world_server.core.mapfile import load_map
+from onehop.maps.map_file import load_map
 
 EYE_HEIGHT = 1.15
 """Height from which the map is seen, as a share of its longer side; straight down, y upwards."""

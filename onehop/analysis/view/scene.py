@@ -46,7 +46,7 @@ Points = npt.NDArray[np.float32]
 
 
 def base_link(robot: int) -> str:
-    """Frame of a robot."""
+    """MessageTrace of a robot."""
     return f"{robot_name(robot)}/base_link"
 
 

@@ -1,7 +1,7 @@
 """No routing: every message goes to its destination in one hop or not at all."""
 
-from onehop.contracts.messages import Fate
-from radio_proxy.core.message import Data
+from onehop.contracts.messages import DeliveryStatus
+from radio_proxy.core.data_message import DataPacket
 from radio_proxy.core.routing.interface import Host
 
 
@@ -11,16 +11,16 @@ class DirectRouter:
     def __init__(self, host: Host) -> None:
         self._host = host
 
-    def submit(self, data: Data, now: int) -> None:
+    def submit(self, data: DataPacket, now: int) -> None:
         message = data.message
         if not self._host.send(data, message.destination, message.msdu_bytes, "", now):
-            self._host.drop(data, Fate.QUEUE_FULL)
+            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
 
-    def abandon(self) -> list[Data]:
+    def abandon(self) -> list[DataPacket]:
         return []
 
     def on_packet(self, packet: object, sender: int, now: int) -> None:  # noqa: ARG002
-        assert isinstance(packet, Data)
+        assert isinstance(packet, DataPacket)
         self._host.deliver(packet, now)
 
     def on_overheard(self, packet: object, sender: int, now: int) -> None:
@@ -32,6 +32,6 @@ class DirectRouter:
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
         """Nothing is kept that could be refreshed."""
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: Fate, now: int) -> None:  # noqa: ARG002
-        assert isinstance(packet, Data)
+    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:  # noqa: ARG002
+        assert isinstance(packet, DataPacket)
         self._host.drop(packet, cause)

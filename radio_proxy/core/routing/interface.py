@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import Any, Protocol
 
-from onehop.contracts.messages import Fate
-from radio_proxy.core.message import Data
+from onehop.contracts.messages import DeliveryStatus
+from radio_proxy.core.data_message import DataPacket
 
 
 class Host(Protocol):
@@ -20,11 +20,11 @@ class Host(Protocol):
         """
         ...
 
-    def deliver(self, data: Data, now: int) -> None:
+    def deliver(self, data: DataPacket, now: int) -> None:
         """Hand a message to its robot; a second copy is dropped here."""
         ...
 
-    def drop(self, data: Data, fate: Fate) -> None:
+    def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
         """Give one copy of a message up."""
         ...
 
@@ -48,16 +48,16 @@ class Host(Protocol):
 class Router(Protocol):
     """A routing protocol on one robot."""
 
-    def submit(self, data: Data, now: int) -> None:
+    def submit(self, data: DataPacket, now: int) -> None:
         """The robot itself has a message for another."""
         ...
 
-    def abandon(self) -> list[Data]:
+    def abandon(self) -> list[DataPacket]:
         """The robot leaves: the messages that still wait for a route."""
         ...
 
     def on_packet(self, packet: object, sender: int, now: int) -> None:
-        """A packet arrived from a neighbour; a Data already lists this robot in its path."""
+        """A packet arrived from a neighbour; a DataPacket already lists this robot in its path."""
         ...
 
     def on_overheard(self, packet: object, sender: int, now: int) -> None:
@@ -72,6 +72,6 @@ class Router(Protocol):
         """The link layer's acknowledgement of a unicast packet came."""
         ...
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: Fate, now: int) -> None:
+    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:
         """The link layer gave a unicast packet up."""
         ...

@@ -12,8 +12,8 @@ of keeping silent so long (6.13). Requests are jittered before they are passed o
 from collections import deque
 from dataclasses import dataclass, field, replace
 
-from onehop.contracts.messages import BROADCAST, Fate
-from radio_proxy.core.message import SEARCHES, Data
+from onehop.contracts.messages import BROADCAST, DeliveryStatus
+from radio_proxy.core.data_message import SEARCHES, DataPacket
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
 from radio_proxy.core.routing.interface import Host
 from radio_proxy.core.routing.mrdv_packets import RREP_BYTES, RREQ_BYTES, Rerr, Rrep, Rreq, rerr_bytes
@@ -37,14 +37,14 @@ BUFFER_MESSAGES = 64
 
 
 @dataclass(slots=True, eq=False)
-class Search:
+class RouteDiscovery:
     """A discovery under way. network_wide: requests sent through the whole net so far."""
 
     destination: int
     ttl: int
     network_wide: int = 0
     number: int = 0
-    waiting: list[Data] = field(default_factory=list)
+    waiting: list[DataPacket] = field(default_factory=list)
 
 
 class MrdvRouter:
@@ -58,24 +58,24 @@ class MrdvRouter:
         self._sequence = host.incarnation << 16
         self._number = host.incarnation << 16
         self._cautious_until = now + DELETE_PERIOD_NS if host.incarnation else now
-        self._searches: dict[int, Search] = {}
+        self._searches: dict[int, RouteDiscovery] = {}
         self.buffered = 0
         self._seen: dict[tuple[int, int], int] = {}
         self._requests: deque[int] = deque()
         self._errors: deque[int] = deque()
         self._blacklist: dict[int, int] = {}
 
-    def submit(self, data: Data, now: int) -> None:
+    def submit(self, data: DataPacket, now: int) -> None:
         if data.message.destination in self._searches or not self._forward(data, now):
             self._wait(data, now)
 
-    def abandon(self) -> list[Data]:
+    def abandon(self) -> list[DataPacket]:
         waiting = [data for to in sorted(self._searches) for data in self._searches[to].waiting]
         self._searches.clear()
         return waiting
 
     def on_packet(self, packet: object, sender: int, now: int) -> None:
-        if isinstance(packet, Data):
+        if isinstance(packet, DataPacket):
             self._on_data(packet, sender, now)
         elif isinstance(packet, Rreq):
             self._on_rreq(packet, sender, now)
@@ -94,21 +94,21 @@ class MrdvRouter:
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:  # noqa: ARG002
         self.table.refresh(next_hop, now)
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: Fate, now: int) -> None:
+    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:
         """Link-layer feedback: the neighbour is gone (RFC 3561, 6.10 and 6.11 case i)."""
         self._report(self.table.break_link(next_hop, now), now)
         if isinstance(packet, Rrep):
             self._blacklist[next_hop] = now + RREQ_RETRIES * NET_TRAVERSAL_NS
-        if not isinstance(packet, Data):
+        if not isinstance(packet, DataPacket):
             return
         if packet.message.source == self._me and packet.message.searches < SEARCHES:
             self.submit(replace(packet, attempts=()), now)
         else:
             self._host.drop(packet, cause)
 
-    # Data.
+    # DataPacket.
 
-    def _on_data(self, data: Data, sender: int, now: int) -> None:
+    def _on_data(self, data: DataPacket, sender: int, now: int) -> None:
         self.table.meet(sender, now)
         self.table.refresh(data.message.source, now)
         if data.message.destination == self._me:
@@ -117,9 +117,9 @@ class MrdvRouter:
             route = self.table.entry(data.message.destination, now)
             sequence = route.sequence if route is not None else 0
             self._send_rerr(((data.message.destination, sequence),), (sender,), now)
-            self._host.drop(data, Fate.NO_ROUTE)
+            self._host.drop(data, DeliveryStatus.NO_ROUTE)
 
-    def _forward(self, data: Data, now: int) -> bool:
+    def _forward(self, data: DataPacket, now: int) -> bool:
         """Send a message along its route; False when there is none."""
         message = data.message
         route = self.table.usable(message.destination, now)
@@ -128,14 +128,14 @@ class MrdvRouter:
         self.table.refresh(message.destination, now)
         self.table.refresh(route.next_hop, now)
         if not self._host.send(data, route.next_hop, message.msdu_bytes, "", now):
-            self._host.drop(data, Fate.QUEUE_FULL)
+            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
         return True
 
     # Discovery by the origin.
 
-    def _wait(self, data: Data, now: int) -> None:
+    def _wait(self, data: DataPacket, now: int) -> None:
         if self.buffered >= BUFFER_MESSAGES:
-            self._host.drop(data, Fate.QUEUE_FULL)
+            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
             return
         self.buffered += 1
         destination = data.message.destination
@@ -146,10 +146,10 @@ class MrdvRouter:
             return
         known = self.table.entry(destination, now)
         ttl = TTL_START if known is None else min(known.hops + TTL_INCREMENT, TTL_THRESHOLD)
-        search = self._searches[destination] = Search(destination, ttl, waiting=[data])
+        search = self._searches[destination] = RouteDiscovery(destination, ttl, waiting=[data])
         self._ask(search, now)
 
-    def _ask(self, search: Search, now: int) -> None:
+    def _ask(self, search: RouteDiscovery, now: int) -> None:
         """Send the search's next request, or wait for the rate limit (RFC 3561, 6.3 and 6.4)."""
         if self._searches.get(search.destination) is not search:
             return
@@ -181,20 +181,20 @@ class MrdvRouter:
             patience = 2 * NODE_TRAVERSAL_NS * (search.ttl + TIMEOUT_BUFFER)
         self._host.at(now + patience, self._on_no_answer, (search, search.number))
 
-    def _on_no_answer(self, asked: tuple[Search, int], now: int) -> None:
+    def _on_no_answer(self, asked: tuple[RouteDiscovery, int], now: int) -> None:
         search, number = asked
         if self._searches.get(search.destination) is not search or search.number != number:
             return
         if search.network_wide > RREQ_RETRIES:
             for data in self._end_search(search, now):
-                self._host.drop(data, Fate.NO_ROUTE)
+                self._host.drop(data, DeliveryStatus.NO_ROUTE)
             return
         search.ttl += TTL_INCREMENT
         if search.ttl > TTL_THRESHOLD:
             search.ttl = NET_DIAMETER
         self._ask(search, now)
 
-    def _end_search(self, search: Search, now: int) -> list[Data]:
+    def _end_search(self, search: RouteDiscovery, now: int) -> list[DataPacket]:
         del self._searches[search.destination]
         self.buffered -= len(search.waiting)
         for data in search.waiting:

@@ -14,8 +14,8 @@ one, because in one cell every neighbour passes one on.
 
 from dataclasses import dataclass, field, replace
 
-from onehop.contracts.messages import BROADCAST, Fate
-from radio_proxy.core.message import SEARCHES, Data
+from onehop.contracts.messages import BROADCAST, DeliveryStatus
+from radio_proxy.core.data_message import SEARCHES, DataPacket
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
 from radio_proxy.core.routing.interface import Host
 from radio_proxy.core.routing.mrsr_cache import RouteCache
@@ -43,14 +43,14 @@ BLACKLIST_NS = 5000 * MS
 
 
 @dataclass(slots=True, eq=False)
-class Search:
+class RouteDiscovery:
     """A discovery under way. sent: requests so far; number, patience [ns]: of the last one."""
 
     target: int
     sent: int = 0
     number: int = 0
     patience: int = 0
-    waiting: list[Data] = field(default_factory=list)
+    waiting: list[DataPacket] = field(default_factory=list)
 
 
 class MrsrRouter:
@@ -62,17 +62,17 @@ class MrsrRouter:
         self._me = host.robot
         self._gamma_distance = gamma_distance
         self._number = host.incarnation << 16
-        self._searches: dict[int, Search] = {}
+        self._searches: dict[int, RouteDiscovery] = {}
         self.buffered = 0
         self._seen: dict[int, dict[int, int]] = {}
         self._blacklist: dict[int, int] = {}
         self._pending: dict[tuple[int, int], int] = {}
 
-    def submit(self, data: Data, now: int) -> None:
+    def submit(self, data: DataPacket, now: int) -> None:
         if data.message.destination in self._searches or not self._send_along_cache(data, now):
             self._wait(data, now)
 
-    def abandon(self) -> list[Data]:
+    def abandon(self) -> list[DataPacket]:
         waiting = [data for target in sorted(self._searches) for data in self._searches[target].waiting]
         self._searches.clear()
         return waiting
@@ -82,7 +82,7 @@ class MrsrRouter:
         return sum(len(seen) for seen in self._seen.values())
 
     def on_packet(self, packet: object, sender: int, now: int) -> None:
-        if isinstance(packet, Data):
+        if isinstance(packet, DataPacket):
             self._on_data(packet, now)
         elif isinstance(packet, Rreq):
             self._on_rreq(packet, sender, now)
@@ -119,12 +119,12 @@ class MrsrRouter:
     def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
         """A confirmed link needs no mark: a path holds until it fails or is too old."""
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: Fate, now: int) -> None:
+    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:
         """The link is broken: forget it, tell the source, salvage (RFC 4728, 8.3.4 and 8.3.6)."""
         self.cache.forget_link(self._me, next_hop)
         if isinstance(packet, Rrep):
             self._blacklist[next_hop] = now + BLACKLIST_NS
-        if not isinstance(packet, Data):
+        if not isinstance(packet, DataPacket):
             return
         at_origin = packet.message.source == self._me
         if not at_origin:
@@ -140,9 +140,9 @@ class MrsrRouter:
         else:
             self._host.drop(packet, cause)
 
-    # Data.
+    # DataPacket.
 
-    def _send_along_cache(self, data: Data, now: int) -> bool:
+    def _send_along_cache(self, data: DataPacket, now: int) -> bool:
         """Give a message a source route out of the cache; False when there is none."""
         route = self.cache.find(data.message.destination, now)
         if route is None:
@@ -150,12 +150,12 @@ class MrsrRouter:
         self._send_on(replace(data, route=route), now)
         return True
 
-    def _send_on(self, data: Data, now: int) -> None:
+    def _send_on(self, data: DataPacket, now: int) -> None:
         size = data.message.msdu_bytes + source_route_bytes(data.route)
         if not self._host.send(data, after(data.route, self._me), size, "", now):
-            self._host.drop(data, Fate.QUEUE_FULL)
+            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
 
-    def _on_data(self, data: Data, now: int) -> None:
+    def _on_data(self, data: DataPacket, now: int) -> None:
         self._learn(data.route, now)
         if data.message.destination == self._me:
             self._host.deliver(data, now)
@@ -173,9 +173,9 @@ class MrsrRouter:
 
     # Discovery by the origin.
 
-    def _wait(self, data: Data, now: int) -> None:
+    def _wait(self, data: DataPacket, now: int) -> None:
         if self.buffered >= SEND_BUFFER:
-            self._host.drop(data, Fate.QUEUE_FULL)
+            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
             return
         self.buffered += 1
         data.message.begin_search(now)
@@ -186,10 +186,10 @@ class MrsrRouter:
         if search is not None:
             search.waiting.append(data)
             return
-        search = self._searches[target] = Search(target, waiting=[data])
+        search = self._searches[target] = RouteDiscovery(target, waiting=[data])
         self._ask(search, now)
 
-    def _ask(self, search: Search, now: int) -> None:
+    def _ask(self, search: RouteDiscovery, now: int) -> None:
         """The next request: the neighbours first, then the net, ever more rarely (RFC 4728, 8.2.1)."""
         if self._searches.get(search.target) is not search:
             return
@@ -212,17 +212,17 @@ class MrsrRouter:
         if not self._host.send(request, BROADCAST, request.size_bytes, "rreq", now):
             self._host.at(now + search.patience, self._ask, search)
 
-    def _on_waited_too_long(self, data: Data, now: int) -> None:
+    def _on_waited_too_long(self, data: DataPacket, now: int) -> None:
         search = self._searches.get(data.message.destination)
         if search is not None and data in search.waiting:
             self._give_up([data], now)
 
-    def _give_up(self, waiting: list[Data], now: int) -> None:
+    def _give_up(self, waiting: list[DataPacket], now: int) -> None:
         for data in waiting:
             self._take_out(data, now)
-            self._host.drop(data, Fate.NO_ROUTE)
+            self._host.drop(data, DeliveryStatus.NO_ROUTE)
 
-    def _take_out(self, data: Data, now: int) -> None:
+    def _take_out(self, data: DataPacket, now: int) -> None:
         """A message leaves the send buffer; with the last one its discovery ends."""
         search = self._searches[data.message.destination]
         search.waiting.remove(data)

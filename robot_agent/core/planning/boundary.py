@@ -10,8 +10,8 @@ import math
 import numpy as np
 
 from onehop.contracts import elementary
+from onehop.contracts.arrays import FloatArray
 from robot_agent.core.planning.view import View
-from robot_agent.core.scan import FloatArray
 
 ARC_STEP = 0.35
 """Turn between two traced points of one arc [rad]."""

@@ -18,10 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from onehop.contracts import elementary
+from onehop.contracts.arrays import FloatArray
 from robot_agent.core.planning.boundary import settle, trace
 from robot_agent.core.planning.roadmap import RoadMap
 from robot_agent.core.planning.view import View
-from robot_agent.core.scan import FloatArray
 
 TURN_TO_LOOK = 0.8
 """Turn towards the boundary when nothing of it ahead is known [rad]."""

@@ -4,11 +4,12 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Protocol
 
+from onehop.contracts.arrays import Ranges
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.messages import Note, Ranges
+from onehop.contracts.messages import Note
 
 
-class Progress(StrEnum):
+class PlannerStatus(StrEnum):
     """How far a pathfinder is."""
 
     DRIVING = "driving"
@@ -26,7 +27,7 @@ class Guidance:
     """
 
     twist: Twist
-    progress: Progress
+    progress: PlannerStatus
     remaining: float
     passage: float
     waypoint: tuple[float, float]

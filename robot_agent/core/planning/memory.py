@@ -1,7 +1,7 @@
 """What a leader remembers of where it was and what it left open: a bounded graph, no obstacles.
 
-Three kinds of way points: places (the robot was there), openings (seen free, beside something unseen),
-and closed ones (openings that turned out to lead nowhere new, kept so that they are not opened again).
+Three kinds of way points: places (the robot was there), frontiers (seen free, beside something unseen),
+and closed ones (frontiers that turned out to lead nowhere new, kept so that they are not opened again).
 Its size is fixed when it is made: 121 B a way point; `nbytes` says it.
 """
 
@@ -13,15 +13,15 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts.arrays import FloatArray
 from robot_agent.core.planning.view import squared_distances
-from robot_agent.core.scan import FloatArray
 
 Indices = npt.NDArray[np.intp]
 
 NOTHING = -1
 """Stands where no way point is."""
 
-PLACE, OPENING, CLOSED = 1, 2, 4
+PLACE, FRONTIER, CLOSED = 1, 2, 4
 """Kinds of way points; their sums stand for several."""
 
 DEGREE = 8
@@ -65,7 +65,7 @@ class WayPoints:
         return number
 
     def close(self, number: int) -> None:
-        """An opening that leads nowhere new; its edges are forgotten."""
+        """A frontier that leads nowhere new; its edges are forgotten."""
         self.kind[number] = CLOSED
         self._closed += 1
         self._closed_as[number] = self._closed

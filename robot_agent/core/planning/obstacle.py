@@ -12,8 +12,8 @@ from enum import Enum
 import numpy as np
 
 from onehop.contracts import elementary
-from robot_agent.core.planning.view import BoolArray, View
-from robot_agent.core.scan import FloatArray
+from onehop.contracts.arrays import BoolArray, FloatArray
+from robot_agent.core.planning.view import View
 
 FRONT_HALF = math.radians(30.0)
 """Half opening of the front third [rad]."""

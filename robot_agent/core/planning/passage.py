@@ -8,8 +8,8 @@ import math
 import numpy as np
 
 from onehop.contracts import elementary
+from onehop.contracts.arrays import FloatArray
 from robot_agent.core.planning.view import View, squared_distances
-from robot_agent.core.scan import FloatArray
 
 STEP = 0.5
 """Distance between the places of a way beside which obstacles are looked for [m]."""

@@ -2,15 +2,15 @@
 
 import numpy as np
 
+from onehop.contracts.briefings import Briefing
 from onehop.contracts.geometry import Pose
-from onehop.contracts.scenario import Briefing
-from robot_agent.core.planning.escape import Escape
-from robot_agent.core.planning.stepwise import Stepwise
-from robot_agent.core.planning.survey import SurveyedPathfinder
+from robot_agent.core.planning.frontier_planner import FrontierPlanner
+from robot_agent.core.planning.snapshot import ObservablePathfinder
+from robot_agent.core.planning.thesis_planner import ThesisPlanner
 
 
-def make_pathfinder(briefing: Briefing, pose: Pose, rng: np.random.Generator) -> SurveyedPathfinder:
+def make_pathfinder(briefing: Briefing, pose: Pose, rng: np.random.Generator) -> ObservablePathfinder:
     """A pathfinder for a leader that stands at `pose`; rng is its own random stream."""
     if briefing.planner.kind == "escape":
-        return Escape(briefing, pose, rng)
-    return Stepwise(briefing, pose, rng, limited=briefing.planner.kind == "modified")
+        return FrontierPlanner(briefing, pose, rng)
+    return ThesisPlanner(briefing, pose, rng, limited=briefing.planner.kind == "modified")

@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts import elementary
-from robot_agent.core.planning.view import BoolArray, View, squared_distances
-from robot_agent.core.scan import FloatArray
+from onehop.contracts.arrays import BoolArray, FloatArray
+from robot_agent.core.planning.view import View, squared_distances
 
 Indices = npt.NDArray[np.intp]
 

@@ -9,8 +9,8 @@ import math
 import numpy as np
 
 from onehop.contracts import elementary
+from onehop.contracts.arrays import FloatArray
 from robot_agent.core.planning.view import NO_POINTS, View
-from robot_agent.core.scan import FloatArray
 
 R2: FloatArray = np.array((0.7548776662466927, 0.5698402909980532))
 """1/g and 1/g^2 with g^3 = g + 1."""

@@ -1,8 +1,8 @@
 """What one scan shows: points that were hit, what is visible, and how much room is left around a way.
 
 Works in the map frame. Beside the beams it holds `beside`: points that left the field of view a moment
-ago and still lie beside or behind the robot (a bounded memory, see `Afterimage`); a laser that looks
-180 degrees ahead cannot turn around a corner without them.
+ago and still lie beside or behind the robot (a bounded memory, see `RecentObstacles`); a laser that
+looks 180 degrees ahead cannot turn around a corner without them.
 """
 
 import math
@@ -11,11 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts import elementary
+from onehop.contracts.arrays import BoolArray, FloatArray, Ranges
+from onehop.contracts.beams import Beams
 from onehop.contracts.geometry import Pose
-from onehop.contracts.messages import Ranges
-from robot_agent.core.scan import Fan, FloatArray
 
-BoolArray = npt.NDArray[np.bool_]
 Float32Array = npt.NDArray[np.float32]
 
 BLOCK = 16384
@@ -35,7 +34,7 @@ class View:
 
     def __init__(
         self,
-        fan: Fan,
+        fan: Beams,
         pose: Pose,
         scan: Ranges,
         grain: float,
@@ -120,7 +119,7 @@ class View:
         return np.asarray(keeps_tight), np.asarray(keeps_wide)
 
 
-class Afterimage:
+class RecentObstacles:
     """Points that left the field of view but are still near: at most `capacity`, 16 B each."""
 
     def __init__(self, reach: float, capacity: int = 256) -> None:

@@ -13,8 +13,8 @@ from onehop.contracts.sections import (
     Point,
     StartSection,
 )
-from world_server.core.mapfile import load_map
-from world_server.core.walls import WallMap
+from onehop.maps.map_file import load_map
+from onehop.maps.walls import WallMap
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -5,14 +5,15 @@ import math
 import numpy as np
 import pytest
 
+from onehop.contracts.arrays import FloatArray
+from onehop.contracts.beams import Beams
 from onehop.contracts.geometry import Pose
 from onehop.contracts.sections import RobotSection
 from robot_agent.core.planning.boundary import _pivot, settle, trace
 from robot_agent.core.planning.view import View
-from robot_agent.core.scan import Fan, FloatArray
 
 BODY = RobotSection()
-FAN = Fan(BODY)
+FAN = Beams(BODY)
 NOTHING_SEEN = np.full(BODY.laser_beams, np.inf, dtype=np.float32)
 
 

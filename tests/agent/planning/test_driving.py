@@ -5,20 +5,20 @@ import math
 import numpy as np
 import pytest
 
+from onehop.contracts.beams import Beams
 from onehop.contracts.geometry import Pose
 from onehop.contracts.sections import RobotSection
-from robot_agent.core.planning.driving import Driver
-from robot_agent.core.scan import Fan
+from robot_agent.core.planning.path_tracking import PathTracker
 from tests.agent.planning.test_pathfinders import moved
 
 BODY = RobotSection()
-FAN = Fan(BODY)
+FAN = Beams(BODY)
 CLEAR = np.full(BODY.laser_beams, np.inf, dtype=np.float32)
 PERIOD = 0.05
 
 
-def driver(*way: tuple[float, float]) -> Driver:
-    made = Driver(BODY, FAN, PERIOD, 0.5)
+def driver(*way: tuple[float, float]) -> PathTracker:
+    made = PathTracker(BODY, FAN, PERIOD, 0.5)
     made.follow(np.array(way))
     return made
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from robot_agent.core.planning.memory import CLOSED, DEGREE, NOTHING, OPENING, PLACE, WayPoints
+from robot_agent.core.planning.memory import CLOSED, DEGREE, FRONTIER, NOTHING, PLACE, WayPoints
 
 
 def line(count: int, capacity: int = 16) -> WayPoints:
@@ -32,7 +32,7 @@ def test_a_parted_edge_is_no_way() -> None:
 
 
 def test_a_moved_way_point_is_not_reached_by_its_old_edges() -> None:
-    """They had the lengths to where it was: a receding opening drew the robot around a pillar."""
+    """They had the lengths to where it was: a receding frontier drew the robot around a pillar."""
     points = line(3)
     points.move(1, 9.0, 9.0)
     assert points.xy[1].tolist() == [9.0, 9.0]
@@ -62,7 +62,7 @@ def test_the_oldest_closed_one_makes_room_and_its_edges_are_gone() -> None:
     points.close(2)
     points.close(1)
     assert points.has_room
-    assert points.add(9.0, 9.0, OPENING) == 2
+    assert points.add(9.0, 9.0, FRONTIER) == 2
     assert points.of_kind(CLOSED).tolist() == [1]
     assert [number for number, _ in points.routes({0: 0.0}, {})] == [0]
 
@@ -74,7 +74,7 @@ def test_size_does_not_depend_on_what_is_remembered() -> None:
 
 def test_nearest_looks_at_the_asked_kinds_only() -> None:
     points = line(3)
-    points.add(0.4, 0.0, OPENING)
+    points.add(0.4, 0.0, FRONTIER)
     assert points.nearest(0.3, 0.0, PLACE) == (0, pytest.approx(0.3))
-    assert points.nearest(0.3, 0.0, PLACE + OPENING)[0] == 3
+    assert points.nearest(0.3, 0.0, PLACE + FRONTIER)[0] == 3
     assert points.nearest(0.3, 0.0, CLOSED) == (NOTHING, math.inf)

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from onehop.contracts.briefings import robot_briefing
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.randomness import generator
-from onehop.contracts.scenario import robot_briefing
 from onehop.contracts.sections import Point, RobotSection
-from onehop.drive.solo import Solo, solo
-from robot_agent.core.planning import Progress, make_pathfinder
-from robot_agent.core.planning.escape import Escape, Phase
+from onehop.drivers.trial import Trial, run_trial
+from robot_agent.core.planning import PlannerStatus, make_pathfinder
+from robot_agent.core.planning.frontier_planner import FrontierPlanner, SearchPhase
 from tests.agent.planning.fields import CLOSED_ROOM, THREE_WALLS, alone, box, field, study_map
 from world_server.core.laser import Laser
 
@@ -44,14 +44,14 @@ PILLAR_WAYS = tuple(
 )
 
 
-def assert_arrived(outcome: Solo) -> None:
-    assert outcome.progress is Progress.ARRIVED
+def assert_arrived(outcome: Trial) -> None:
+    assert outcome.progress is PlannerStatus.ARRIVED
     assert outcome.contacts == 0
     assert outcome.min_clearance >= INFLATION
 
 
 def test_empty_field_is_crossed_straight_at_constant_speed() -> None:
-    outcome = solo(*alone(field(size=60.0), (5.0, 5.0, 45.0), (45.0, 45.0)))
+    outcome = run_trial(*alone(field(size=60.0), (5.0, 5.0, 45.0), (45.0, 45.0)))
     assert_arrived(outcome)
     straight = math.dist((5.0, 5.0), (45.0, 45.0))
     assert outcome.length < 1.02 * straight
@@ -60,7 +60,7 @@ def test_empty_field_is_crossed_straight_at_constant_speed() -> None:
 
 def test_leader_goes_around_a_block_without_stopping() -> None:
     ground = field(box(20, 10, 25, 30), size=40.0)
-    outcome = solo(*alone(ground, (10.0, 20.0, 0.0), (35.0, 20.0)))
+    outcome = run_trial(*alone(ground, (10.0, 20.0, 0.0), (35.0, 20.0)))
     assert_arrived(outcome)
     steps = np.hypot(*np.diff(outcome.path[:, :2], axis=0).T)
     assert np.mean(steps > 0.9 * 0.05) > 0.94
@@ -68,7 +68,9 @@ def test_leader_goes_around_a_block_without_stopping() -> None:
 
 @pytest.mark.parametrize("heading", [0.0, 90.0, 180.0, -90.0])
 def test_a_new_leader_turns_to_its_way_from_any_heading(heading: float) -> None:
-    outcome = solo(*alone(field(box(20, 0, 22, 20), size=40.0), (10.0, 10.0, heading), (30.0, 10.0)))
+    outcome = run_trial(
+        *alone(field(box(20, 0, 22, 20), size=40.0), (10.0, 10.0, heading), (30.0, 10.0))
+    )
     assert_arrived(outcome)
 
 
@@ -97,7 +99,7 @@ def moved(pose: np.ndarray, twist: Twist) -> np.ndarray:
 def test_same_seed_same_path_and_another_seed_another() -> None:
     ground = field(box(20, 10, 25, 30), size=40.0)
     first, again, other = (
-        solo(*alone(ground, (10.0, 20.0, 0.0), (35.0, 20.0), seed=seed)).path.tobytes()
+        run_trial(*alone(ground, (10.0, 20.0, 0.0), (35.0, 20.0), seed=seed)).path.tobytes()
         for seed in (1, 1, 2)
     )
     assert first == again
@@ -113,8 +115,8 @@ def test_a_small_robot_threads_its_way_between_pillars(start: Point, goal: Point
         robot=RobotSection(radius=0.12, leader_speed=0.3, laser_range=3.5),
         planner=replace(scenario.planner, inflation=0.2),
     )
-    outcome = solo(small, walls)
-    assert outcome.progress is Progress.ARRIVED
+    outcome = run_trial(small, walls)
+    assert outcome.progress is PlannerStatus.ARRIVED
     assert outcome.contacts == 0
     assert outcome.min_clearance >= 0.2
     assert outcome.length < 1.3 * math.dist(start, goal)
@@ -123,7 +125,7 @@ def test_a_small_robot_threads_its_way_between_pillars(start: Point, goal: Point
 def test_a_goal_too_near_a_wall_for_a_way_is_reached_within_its_tolerance() -> None:
     """It keeps the inflation of 0.5 m, but not the 4 % more that a way keeps."""
     scenario, walls = alone(field(box(20, 10, 25, 30), size=40.0), (10.0, 20.0, 0.0), (19.49, 20.0))
-    outcome = solo(scenario, walls)
+    outcome = run_trial(scenario, walls)
     assert_arrived(outcome)
     assert outcome.length < 9.8
 
@@ -132,7 +134,7 @@ def test_a_leader_that_cannot_drive_its_way_makes_room_first() -> None:
     """The driver refuses every way: the planner must not offer the same one for ever."""
     scenario, walls = alone(field(size=30.0), (15.0, 15.0, 0.0), (25.0, 25.0))
     finder = make_pathfinder(robot_briefing(scenario, 1, 0), Pose(5.0, 0.6, 0.0), generator(1, "test"))
-    assert isinstance(finder, Escape)
+    assert isinstance(finder, FrontierPlanner)
     scan = Laser(walls, RobotSection()).scans(np.array([[5.0, 0.6, 0.0]]), np.zeros(1, dtype=np.int32))
     for _ in range(5):
         finder.step(Pose(5.0, 0.6, 0.0), scan[0])
@@ -147,15 +149,15 @@ def test_a_leader_that_never_comes_closer_gives_up_in_the_end_and_says_that_it_p
     """Held in place, as by a team that makes it wait; the bound made short."""
     scenario, walls = alone(field(size=30.0), (15.0, 15.0, 0.0), (25.0, 25.0))
     finder = make_pathfinder(robot_briefing(scenario, 1, 0), Pose(5.0, 5.0, 0.0), generator(1, "test"))
-    assert isinstance(finder, Escape)
+    assert isinstance(finder, FrontierPlanner)
     scan = Laser(walls, RobotSection()).scans(np.array([[5.0, 5.0, 0.0]]), np.zeros(1, dtype=np.int32))
     guidance = finder.step(Pose(5.0, 5.0, 0.0), scan[0])
     finder.spent = 1999.9 * RobotSection().laser_range
     for _ in range(6 * 170):
         guidance = finder.step(Pose(5.0, 5.0, 0.0), scan[0])
-        if guidance.progress is not Progress.DRIVING:
+        if guidance.progress is not PlannerStatus.DRIVING:
             break
-    assert guidance.progress is Progress.NO_WAY
+    assert guidance.progress is PlannerStatus.NO_WAY
     assert [note.data["proven"] for note in guidance.notes if note.kind == "no_way"] == [False]
 
 
@@ -164,7 +166,7 @@ def test_a_leader_that_never_comes_closer_gives_up_in_the_end_and_says_that_it_p
 def test_a_door_beside_a_long_wall_is_not_passed_by(seed: int) -> None:
     """42.6 m through map3's second passage; without it, a tour of the map of 600 m."""
     ground = study_map("map3")
-    outcome = solo(*alone(ground, (34.375, 46.625, 36.0), (68.375, 71.375), seed=seed))
+    outcome = run_trial(*alone(ground, (34.375, 46.625, 36.0), (68.375, 71.375), seed=seed))
     assert_arrived(outcome)
     assert outcome.length < 1.05 * 42.6
 
@@ -173,8 +175,8 @@ def test_a_door_beside_a_long_wall_is_not_passed_by(seed: int) -> None:
 def test_no_way_is_the_answer_for_a_closed_room_in_bounded_time() -> None:
     scenario, walls = alone(field(*CLOSED_ROOM), (60.0, 60.0, 45.0), (82.0, 82.0), limit_s=1500.0)
     scenario = replace(scenario, planner=replace(scenario.planner, patience=5.0))
-    outcome = solo(scenario, walls)
-    assert outcome.progress is Progress.NO_WAY
+    outcome = run_trial(scenario, walls)
+    assert outcome.progress is PlannerStatus.NO_WAY
     assert outcome.contacts == 0
     search = scenario.planner.patience * scenario.robot.laser_range
     assert outcome.length < 5.0 * search + 2.0 * 104.0, outcome.length
@@ -184,7 +186,7 @@ def test_no_way_is_the_answer_for_a_closed_room_in_bounded_time() -> None:
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_escape_leaves_three_walls_nine_metres_apart(seed: int) -> None:
     """Thesis 4.1: three walls less than 10 m wide. How often Algorithm 2 fails there: bench/traps.py."""
-    assert_arrived(solo(*alone(field(THREE_WALLS), (20.0, 50.0, 0.0), (90.0, 50.0), seed=seed)))
+    assert_arrived(run_trial(*alone(field(THREE_WALLS), (20.0, 50.0, 0.0), (90.0, 50.0), seed=seed)))
 
 
 @pytest.mark.slow
@@ -192,33 +194,35 @@ def test_distbug_alone_leaves_the_trap() -> None:
     """The guarantee behind the search: with no patience at all, boundary following does it."""
     scenario, walls = alone(field(THREE_WALLS), (20.0, 50.0, 0.0), (90.0, 50.0))
     finder = make_pathfinder(robot_briefing(scenario, 1, 0), Pose(20.0, 50.0, 0.0), generator(1, "test"))
-    assert isinstance(finder, Escape)
+    assert isinstance(finder, FrontierPlanner)
     finder.budget = -1.0
     laser, pose, phases = Laser(walls, RobotSection()), np.array([[20.0, 50.0, 0.0]]), set()
     for _ in range(6000):
         scan = laser.scans(pose, np.zeros(1, dtype=np.int32))[0]
         guidance = finder.step(Pose(*map(float, pose[0])), scan)
         phases.add(finder.phase)
-        if guidance.progress is not Progress.DRIVING:
+        if guidance.progress is not PlannerStatus.DRIVING:
             break
         pose[0] = moved(pose[0], guidance.twist)
         assert float(walls.clearance(pose[:, :2])[0]) >= INFLATION
-    assert guidance.progress is Progress.ARRIVED
-    assert Phase.CIRCLE in phases
+    assert guidance.progress is PlannerStatus.ARRIVED
+    assert SearchPhase.CIRCLE in phases
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["map1", "map2", "map3"])
 def test_escape_crosses_the_study_maps(name: str) -> None:
-    assert_arrived(solo(*alone(study_map(name), (10.0, 10.0, 45.0), (90.0, 90.0))))
+    assert_arrived(run_trial(*alone(study_map(name), (10.0, 10.0, 45.0), (90.0, 90.0))))
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_modified_leaves_the_corner_of_map1_and_original_does_not(seed: int) -> None:
     """Thesis fig. 4.1: within the same time."""
-    for kind, progress in (("modified", Progress.ARRIVED), ("original", Progress.DRIVING)):
-        outcome = solo(*alone(study_map("map1"), (10.0, 10.0, 45.0), (90.0, 90.0), kind, seed, 600.0))
+    for kind, progress in (("modified", PlannerStatus.ARRIVED), ("original", PlannerStatus.DRIVING)):
+        outcome = run_trial(
+            *alone(study_map("map1"), (10.0, 10.0, 45.0), (90.0, 90.0), kind, seed, 600.0)
+        )
         assert outcome.progress is progress
         assert outcome.contacts == 0
 
@@ -226,10 +230,10 @@ def test_modified_leaves_the_corner_of_map1_and_original_does_not(seed: int) -> 
 def test_memory_of_escape_is_fixed_when_it_is_made() -> None:
     scenario, walls = alone(field(box(20, 10, 25, 30), size=40.0), (10.0, 20.0, 0.0), (35.0, 20.0))
     finder = make_pathfinder(robot_briefing(scenario, 1, 0), Pose(10.0, 20.0, 0.0), generator(1, "test"))
-    assert isinstance(finder, Escape)
-    before = finder.openings.nbytes
+    assert isinstance(finder, FrontierPlanner)
+    before = finder.frontiers.nbytes
     scan = Laser(walls, RobotSection()).scans(
         np.array([[10.0, 20.0, 0.0]]), np.zeros(1, dtype=np.int32)
     )[0]
     finder.step(Pose(10.0, 20.0, 0.0), scan)
-    assert finder.openings.nbytes == before < 150_000
+    assert finder.frontiers.nbytes == before < 150_000

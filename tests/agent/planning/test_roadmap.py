@@ -7,27 +7,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from onehop.contracts.beams import Beams
 from onehop.contracts.geometry import Pose
 from onehop.contracts.randomness import generator
 from onehop.contracts.sections import MapSection, RobotSection
+from onehop.maps.map_file import load_map
+from onehop.maps.walls import segment_distances
 from robot_agent.core.planning.passage import passage_width
 from robot_agent.core.planning.roadmap import RoadMap
 from robot_agent.core.planning.sampling import sample_fan
 from robot_agent.core.planning.view import (
     NO_POINTS,
-    Afterimage,
+    RecentObstacles,
     View,
     segment_distances2,
     squared_distances,
 )
-from robot_agent.core.scan import Fan
 from tests.agent.planning.fields import box, field
 from world_server.core.laser import Laser
-from world_server.core.mapfile import load_map
-from world_server.core.walls import segment_distances
 
 BODY = RobotSection()
-FAN = Fan(BODY)
+FAN = Beams(BODY)
 BLOCKS = field(box(16, 6, 18, 12), box(14, 14, 15, 20), box(20, 13, 24, 15), size=30.0)
 
 
@@ -72,7 +72,7 @@ def test_every_edge_keeps_the_inflation_from_all_that_can_be_seen(heading: float
     fine = replace(BODY, laser_beams=3601)
     pose = np.array([(10.0, 11.0, heading)])
     scan = Laser(load_map(BLOCKS, {}), fine).scans(pose, np.zeros(1, dtype=np.int32))[0]
-    seen = View(Fan(fine), roadmap.view.pose, scan, 1e-4).obstacles
+    seen = View(Beams(fine), roadmap.view.pose, scan, 1e-4).obstacles
     for share in np.linspace(0.0, 1.0, 9):
         points = edges[:, :2] + share * (edges[:, 2:] - edges[:, :2])
         assert squared_distances(points, seen).min() >= 0.5**2
@@ -127,7 +127,7 @@ def test_who_stands_inside_the_inflation_may_move_out_but_not_further_in() -> No
 
 def test_afterimage_is_bounded_and_holds_what_left_the_view() -> None:
     view = look(BLOCKS, 15.0, 9.0, 0.0)
-    memory = Afterimage(3.0, capacity=32)
+    memory = RecentObstacles(3.0, capacity=32)
     memory.keep(view)
     assert len(memory.points) == 32
     turned = Pose(15.0, 9.0, math.pi)

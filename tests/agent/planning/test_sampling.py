@@ -5,15 +5,15 @@ import math
 import numpy as np
 import pytest
 
+from onehop.contracts.beams import Beams
 from onehop.contracts.geometry import Pose
 from onehop.contracts.randomness import generator
 from onehop.contracts.sections import RobotSection
+from onehop.maps.map_file import load_map
 from robot_agent.core.planning.sampling import corner_samples, goal_sample, spread_draws
 from robot_agent.core.planning.view import View
-from robot_agent.core.scan import Fan
 from tests.agent.planning.fields import box, field
 from world_server.core.laser import Laser
-from world_server.core.mapfile import load_map
 
 BODY = RobotSection()
 
@@ -22,7 +22,7 @@ def look(x: float, y: float, heading: float) -> View:
     """At a block from (20, 10) to (25, 30) in a field of 40 m."""
     walls = load_map(field(box(20, 10, 25, 30), size=40.0), {})
     scan = Laser(walls, BODY).scans(np.array([(x, y, heading)]), np.zeros(1, dtype=np.int32))[0]
-    return View(Fan(BODY), Pose(x, y, heading), scan, 0.05)
+    return View(Beams(BODY), Pose(x, y, heading), scan, 0.05)
 
 
 def test_spread_draws_leave_no_large_hole_and_follow_the_seed() -> None:

@@ -14,11 +14,11 @@ from onehop.contracts.sections import (
     StartSection,
     TeamSection,
 )
-from onehop.drive.inline import run
-from onehop.drive.journal import Journal
-from onehop.drive.log_writer import LogWriter
-from onehop.mission.summary import summarize
-from onehop.scenario_file import Bundle
+from onehop.drivers.inline import run
+from onehop.scenario.scenario_file import Bundle
+from onehop.wire.journal import Journal
+from onehop.wire.log_writer import LogWriter
+from onehop.wire.summary import summarize
 
 LEADER, SUCCESSOR, HELD = 2, 3, 1
 """Of robots 1..4 the thesis makes 2 the leader; without it, of 1, 3, 4, it is 3 (Algorithm 1)."""

@@ -13,8 +13,8 @@ from onehop.analysis.salvage import salvage
 from onehop.analysis.trajectory import draw_trajectory
 from onehop.analysis.view.layer import write_view
 from onehop.contracts.errors import InputError
-from onehop.drive.log_reader import LogFile
-from onehop.drive.log_writer import LogWriter
+from onehop.wire.log_reader import LogFile
+from onehop.wire.log_writer import LogWriter
 
 
 @pytest.fixture(params=[0, 1], ids=["no tick", "one tick"])

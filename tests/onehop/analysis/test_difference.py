@@ -10,9 +10,9 @@ import numpy as np
 
 from onehop.analysis import Log, open_log
 from onehop.analysis.difference import compare
-from onehop.drive.log_reader import LogFile
-from onehop.drive.log_writer import LogWriter
-from onehop.scenario_file import Bundle
+from onehop.scenario.scenario_file import Bundle
+from onehop.wire.log_reader import LogFile
+from onehop.wire.log_writer import LogWriter
 
 Change = Callable[[int, str, bytes], bytes | None]
 
@@ -38,7 +38,7 @@ def altered(data: bytes, change: Callable[[Any], None]) -> bytes:
 def test_a_log_does_not_differ_from_itself(log: Log) -> None:
     found = compare(log, log)
     assert found.same
-    assert found.messages == len(list(log.messages("truth", "ether", "rx/", "obs/", "out/")))
+    assert found.messages == len(list(log.messages("truth", "radio", "rx/", "obs/", "out/")))
 
 
 def test_the_first_changed_field_is_named_with_both_values(

@@ -6,7 +6,7 @@ import pytest
 
 from onehop.analysis import Log
 from onehop.analysis.explanation import explain
-from onehop.analysis.telling import tell
+from onehop.analysis.explanation_text import tell
 from onehop.contracts.errors import InputError
 
 from .conftest import HELD, HELD_S, KILLED_S, LEADER, SUCCESSOR
@@ -60,11 +60,11 @@ def test_a_fault_in_force_is_told(log: Log) -> None:
 
 def test_the_json_object_can_be_written_and_has_what_scripts_need(log: Log) -> None:
     plain = json.loads(json.dumps(explain(log, 4, 3.0).as_json(), allow_nan=False))
-    assert {"robot", "at_s", "tick", "mode", "roster", "k_rho", "error", "frames", "events"} <= set(
+    assert {"robot", "at_s", "tick", "mode", "roster", "k_rho", "error", "messages", "events"} <= set(
         plain
     )
-    assert plain["frames"]
-    assert {"source", "receiver", "kind", "fate", "says"} <= set(plain["frames"][0])
+    assert plain["messages"]
+    assert {"source", "receiver", "kind", "status", "says"} <= set(plain["messages"][0])
 
 
 @pytest.mark.parametrize(("robot", "at_s"), [(9, 1.0), (1, -1.0), (1, 1e6)])

@@ -13,7 +13,7 @@ from onehop.analysis.palette import rgb, robot_colours
 from onehop.analysis.report.follower_chart import rolling_mean
 from onehop.analysis.timeline import spans
 from onehop.analysis.trajectory import draw_trajectory
-from onehop.drive.log_reader import LogFile
+from onehop.wire.log_reader import LogFile
 
 
 def test_neighbouring_robots_are_easy_to_tell_apart() -> None:

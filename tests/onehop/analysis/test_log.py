@@ -8,11 +8,11 @@ import pytest
 from onehop.analysis import Log, open_log
 from onehop.analysis.tables import TABLES
 from onehop.contracts.errors import InputError, LogError
-from onehop.drive.log_reader import LogFile
+from onehop.wire.log_reader import LogFile
 
 from .conftest import HELD, HELD_S, HOLD_S, KILLED_S, LEADER
 
-EVERYTHING = ("truth", "ether", "rx/", "obs/", "out/")
+EVERYTHING = ("truth", "radio", "rx/", "obs/", "out/")
 
 
 def test_every_message_of_the_log_is_found(log: Log, log_path: Path) -> None:

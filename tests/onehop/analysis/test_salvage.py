@@ -10,9 +10,9 @@ from mcap.opcode import Opcode
 from onehop.analysis import Log, open_log
 from onehop.analysis.salvage import salvage
 from onehop.contracts.errors import LogError
-from onehop.drive.log_reader import LogFile, Tick
-from onehop.drive.log_writer import LogWriter
-from onehop.drive.selection import walk
+from onehop.wire.log_reader import LogFile, Tick
+from onehop.wire.log_writer import LogWriter
+from onehop.wire.selection import walk
 
 
 def ticks(path: Path) -> list[Tick]:

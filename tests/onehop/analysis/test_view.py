@@ -15,8 +15,8 @@ from mcap.reader import make_reader
 from onehop.analysis import Log, open_log
 from onehop.analysis.view.layer import write_view
 from onehop.analysis.view.schemas import LINK_FIELDS
-from onehop.drive.log_reader import LogFile, digest
-from onehop.drive.log_writer import LOG_EPOCH_NS
+from onehop.wire.log_reader import LogFile, digest
+from onehop.wire.log_writer import LOG_EPOCH_NS
 
 from .conftest import LEADER
 

@@ -1,0 +1,144 @@
+"""An explanation in sentences, for people."""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from onehop.analysis.explanation import Explanation
+from onehop.analysis.message_traces import MessageTrace
+from onehop.analysis.readable import content_of
+from onehop.contracts.messages import DeliveryStatus
+
+WHY_LOST = {
+    DeliveryStatus.BELOW_THRESHOLD: "the signal was too weak, or a jammer drowned it",
+    DeliveryStatus.BIT_ERRORS: "received, but with bit errors",
+    DeliveryStatus.RETRY_LIMIT: "every attempt failed",
+    DeliveryStatus.NO_ROUTE: "no way through the team was found",
+    DeliveryStatus.QUEUE_FULL: "the sender's queue was full",
+    DeliveryStatus.RECEIVER_GONE: "the receiver is not there any more",
+    DeliveryStatus.SENDER_GONE: "the sender died while it was waiting to be sent",
+}
+"""What each fate of a lost message means, in plain words."""
+
+
+def tell(one: Explanation) -> Iterator[str]:
+    """Lines of text: what the robot is doing, why, and what it heard."""
+    yield f"Robot {one.robot} at {one.at_s:.2f} s (tick {one.tick})"
+    if one.left is not None:
+        yield f"  It left at {one.left['at_s']:.2f} s: {one.left['why']}. What follows is its last tick."
+    yield from (f"  {line}" for line in _state(one))
+    yield from (f"  fault in force: {fault}" for fault in one.faults)
+    yield ""
+    yield "Events before it"
+    yield from (_event(event) for event in one.events)
+    if not one.events:
+        yield "  none"
+    yield ""
+    yield "Messages to it and from it"
+    yield from _messages(one)
+    if not one.heard:
+        yield "  none"
+
+
+def _state(one: Explanation) -> Iterator[str]:
+    status, roster = one.status, one.roster.value
+    change = one.mode_change
+    why = f", on {change['on']!r}, before that {change['was']}" if change else ", from the start"
+    yield f"mode     {one.mode.value} since {one.mode.since_s:.2f} s{why}"
+    members = " ".join(map(str, roster["members"])) or "nobody"
+    whom = "itself" if roster["leader"] == one.robot else f"robot {roster['leader']}"
+    yield (
+        f"roster   obeys {whom}: epoch {roster['epoch']}, {members}, {roster['shape']}, "
+        f"since {one.roster.since_s:.2f} s"
+    )
+    yield from _gain(one)
+    if one.pose:
+        stands = f"stands at ({one.pose['x']:.2f}, {one.pose['y']:.2f}) m"
+        aim = "goal" if roster["leader"] == one.robot else "slot"
+        yield (
+            f"error    {status['error']:.2f} m to its {aim}; {stands}, heads for "
+            f"({status['target_x']:.2f}, {status['target_y']:.2f}) m"
+        )
+        yield f"command  v {status['v']:.2f} m/s, w {status['w']:.2f} rad/s"
+
+
+def _gain(one: Explanation) -> Iterator[str]:
+    status, gains = one.status, one.gains
+    if one.roster.value["leader"] == one.robot:
+        yield f"k_rho    {status['k_rho']:g} 1/s: a leader follows nobody"
+        return
+    measured, threshold = status["throughput_bps"], status["threshold_bps"]
+    if measured <= 0:
+        reason = "a Next is missing, which counts as throughput 0"
+    else:
+        relation = "below" if measured < threshold else "at or above"
+        reason = (
+            f"the last Next came with {measured / 1e3:.0f} kb/s, {relation} the threshold "
+            f"{threshold / 1e3:.0f} kb/s"
+        )
+    if gains.policy == "constant":
+        reason = f"policy constant ({reason})"
+    yield f"k_rho    {status['k_rho']:.2f} 1/s since {one.k_rho.since_s:.2f} s: {reason}"
+    if one.next_s is None:
+        yield "leader   never heard a command of this leader"
+    else:
+        yield (
+            f"leader   last command at {one.next_s:.3f} s, {one.at_s - one.next_s:.2f} s before; "
+            f"one is due every {one.team.next_period:g} s, patience {one.team.leader_timeout:g} s"
+        )
+
+
+def _event(event: dict[str, Any]) -> str:
+    details = ", ".join(
+        f"{key} {' '.join(map(str, value)) if isinstance(value, list | tuple) else _short(value)}"
+        for key, value in event.items()
+        if key not in ("at_s", "kind")
+    )
+    return (
+        f"  {event['at_s']:8.2f} s  {event['kind'].replace('_', ' ')}{': ' if details else ''}{details}"
+    )
+
+
+def _short(value: Any) -> str:
+    return f"{value:.2f}" if isinstance(value, float) else str(value)
+
+
+def _messages(one: Explanation) -> Iterator[str]:
+    """One line a message; what it said to all is one line, however many were to hear it."""
+    told: set[int] = set()
+    for frame in one.heard:
+        if frame.source != one.robot or not frame.broadcast:
+            yield _message(frame, one.robot)
+        elif frame.number not in told:
+            told.add(frame.number)
+            copies = [other for other in one.heard if _same(frame, other)]
+            yield _broadcast(frame, copies)
+
+
+def _same(frame: MessageTrace, other: MessageTrace) -> bool:
+    return (frame.source, frame.number) == (other.source, other.number)
+
+
+def _broadcast(frame: MessageTrace, copies: list[MessageTrace]) -> str:
+    reached = " ".join(str(copy.receiver) for copy in copies if copy.delivered) or "nobody"
+    missed = ", ".join(f"{copy.receiver} {copy.status}" for copy in copies if not copy.delivered)
+    lost = f", LOST: {missed}" if missed else ""
+    return (
+        f"  {frame.offered_s:8.2f} s  to all  {frame.kind:<13} reached {reached}{lost}; "
+        f"{content_of(frame.message)}"
+    )
+
+
+def _message(frame: MessageTrace, robot: int) -> str:
+    to_it = frame.receiver == robot
+    direction = f"from {frame.source}" if to_it else f"to   {frame.receiver}"
+    if frame.delivered:
+        delay_ms = 1e3 * (frame.arrival_s - frame.offered_s)
+        fate = f"arrived after {delay_ms:.1f} ms, SNR {frame.snr_db:.1f} dB"
+    else:
+        snr = "" if math.isinf(frame.snr_db) else f" (SNR {frame.snr_db:.1f} dB)"
+        fate = f"LOST, {frame.status}{snr}: {WHY_LOST[DeliveryStatus(frame.status)]}"
+    tries = f", attempts {frame.attempts}" if frame.attempts > 1 else ""
+    via = f", via {' '.join(map(str, frame.path[1:-1]))}" if len(frame.path) > 2 else ""
+    says = content_of(frame.message)
+    return f"  {frame.offered_s:8.2f} s  {direction:<7} {frame.kind:<13} {fate}{tries}{via}; {says}"

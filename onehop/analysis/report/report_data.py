@@ -1,0 +1,66 @@
+"""Everything that the report draws from, read from the log in one pass."""
+
+from dataclasses import dataclass
+
+from onehop.analysis.log import Log
+from onehop.analysis.message_traces import MessageTrace, join
+from onehop.analysis.palette import robot_colours
+from onehop.analysis.tables import Table
+from onehop.analysis.timeline import LastSeen, Span, departures, fault_spans, main_line, reigns
+from onehop.contracts.messages import LeadershipTerm
+
+_TABLES = (
+    "poses", "status", "notes", "verdicts", "transmit_requests", "control", "contacts", "departures",
+    "cuts", "jams",
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class ReportData:
+    """One mission, taken apart.
+
+    reigns: every roster that was acted on; line: of those, who led most of the team. end_s: time of the
+    last tick in the log [s].
+    """
+
+    log: Log
+    tables: dict[str, Table]
+    colours: dict[int, str]
+    gone: list[LastSeen]
+    reigns: list[LeadershipTerm]
+    line: list[LeadershipTerm]
+    faults: list[Span]
+    frames: list[MessageTrace]
+    period_s: float
+    end_s: float
+
+    @property
+    def robots(self) -> tuple[int, ...]:
+        return self.log.robots
+
+    @property
+    def dead(self) -> dict[int, LastSeen]:
+        """Those who left and never came back."""
+        poses = self.tables["poses"]
+        last = poses["robot"][poses["time_s"] > self.end_s - 1.5 * self.period_s]
+        present = set(last.tolist())
+        return {one.robot: one for one in self.gone if one.robot not in present}
+
+
+def gather(log: Log) -> ReportData:
+    """Read a log. Raises LogError when it is damaged."""
+    tables = log.tables(*_TABLES)
+    period_s = log.period_ns / 1e9
+    poses = tables["poses"]
+    return ReportData(
+        log=log,
+        tables=tables,
+        colours=robot_colours(log.robots),
+        gone=departures(poses, tables["departures"]),
+        reigns=reigns(tables["status"]),
+        line=main_line(tables["status"]),
+        faults=fault_spans(tables, period_s),
+        frames=list(join(tables["verdicts"], tables["transmit_requests"])),
+        period_s=period_s,
+        end_s=float(poses["time_s"][-1]) if len(poses) else 0.0,
+    )

@@ -1,0 +1,1 @@
+"""The ways to run the cores without a bus: in one process, from a log, one planner alone."""

@@ -1,0 +1,50 @@
+"""The inline driver: the whole mission in one process. The other drivers distribute this loop."""
+
+from collections.abc import Callable
+
+from onehop.contracts import topics
+from onehop.contracts.briefings import radio_briefing, robot_briefing
+from onehop.contracts.messages import Action, Outcome, percept
+from onehop.maps.map_file import load_map
+from onehop.scenario.scenario_file import Bundle
+from onehop.wire.codec import encode
+from onehop.wire.journal import Journal, WireMessage
+from radio_proxy.core.radio import Radio
+from robot_agent.core.robot import Robot
+from world_server.core.world import World
+
+Watcher = Callable[[World, dict[int, Action]], None]
+
+
+def run(bundle: Bundle, journal: Journal | None, watch: Watcher | None = None) -> Outcome:
+    """Run a mission to its outcome. watch is called after every tick with the actions of it."""
+    scenario = bundle.scenario
+    walls = load_map(scenario.map, bundle.files)
+    world = World(scenario, walls)
+    radio = Radio(radio_briefing(scenario, walls.segments))
+    robots: dict[tuple[int, int], Robot] = {}
+    outcome = None
+    while outcome is None:
+        truth = world.truth()
+        carried = radio.carry(truth)
+        observations = world.observe()
+        actions: dict[int, Action] = {}
+        for presence in truth.present:
+            me = presence.robot, presence.incarnation
+            if me not in robots:
+                robots[me] = Robot(robot_briefing(scenario, *me))
+            observation = observations[presence.robot]
+            inbox = carried.inboxes[presence.robot]
+            actions[presence.robot] = robots[me].step(percept(observation, inbox))
+        world.advance(actions)
+        if journal is not None:
+            record: list[WireMessage] = [(topics.TRUTH, encode(truth))]
+            record.append((topics.RADIO_RECORD, encode(carried.record)))
+            record += [(topics.rx(i), encode(inbox)) for i, inbox in carried.inboxes.items()]
+            record += [(topics.obs(i), encode(seen)) for i, seen in observations.items()]
+            record += [(topics.out(i), encode(action)) for i, action in actions.items()]
+            journal.add(truth.tick, record)
+        if watch is not None:
+            watch(world, actions)
+        outcome = world.outcome()
+    return outcome

@@ -1,0 +1,44 @@
+"""Which map a scenario means: polygons of its own, a ROS map or a MovingAI grid.
+
+Works on bytes only: whoever has files asks `map_files` for the names of further files, and hands all
+contents to `load_map`.
+"""
+
+from collections.abc import Mapping
+
+from onehop.contracts.errors import MapError
+from onehop.contracts.sections import MapSection
+from onehop.maps.movingai import movingai_map
+from onehop.maps.polygons import polygon_map
+from onehop.maps.ros import ros_image, ros_map
+from onehop.maps.walls import WallMap
+
+
+def map_files(name: str, content: bytes) -> tuple[str, ...]:
+    """Names, as the map file itself writes them, of further files that the map `name` needs.
+
+    Raises MapError when the file cannot be read that far.
+    """
+    return (ros_image(name, content),) if _is_ros(name) else ()
+
+
+def load_map(section: MapSection, files: Mapping[str, bytes]) -> WallMap:
+    """The ground truth of a scenario's map.
+
+    files: contents by name: section.file and, under the names that map_files gave, what belongs to it.
+    Raises MapError: file, what is wrong, what would be right.
+    """
+    if not section.file:
+        return polygon_map(section)
+    content = files[section.file]
+    if _is_ros(section.file):
+        return ros_map(section.file, content, files[ros_image(section.file, content)])
+    if section.file.endswith(".map"):
+        return movingai_map(section.file, content, section.cell)
+    raise MapError(
+        section.file, "no known kind of map", "a ROS map ends in .yaml, a MovingAI grid in .map"
+    )
+
+
+def _is_ros(name: str) -> bool:
+    return name.endswith((".yaml", ".yml"))

@@ -1,0 +1,1 @@
+"""What every process of a mission is: a session on the bus with an identity, tied to its launcher."""

@@ -1,0 +1,105 @@
+"""A data message on its way from robot to robot, and what is on record about it until it is settled."""
+
+from dataclasses import dataclass
+
+from onehop.contracts.messages import DeliveryStatus, Verdict
+from radio_proxy.core.propagation import SILENT_DB
+
+SEARCHES = 2
+"""Discoveries that the origin makes for one message: at first, and once more when a hop failed."""
+
+
+@dataclass(slots=True, eq=False)
+class DataMessage:
+    """One message of one robot. Times in ns, -1 until they are known.
+
+    copies: how many robots hold it (an acknowledgement that is lost leaves two). searching_since: start
+    of the discovery that it waits for; searches: how many there were. loss: the copy
+    that was given up last, and why.
+    """
+
+    number: int
+    source: int
+    destination: int
+    payload: bytes
+    msdu_bytes: int
+    offered: int
+    copies: int = 1
+    settled: bool = False
+    loss: "tuple[DataPacket, DeliveryStatus] | None" = None
+    first_service: int = -1
+    discovery: int = 0
+    discovery_before_service: int = 0
+    searching_since: int = -1
+    searches: int = 0
+    sinr_db: float = SILENT_DB
+    bit_error_rate: float = 0.5
+
+    @property
+    def service_start(self) -> int:
+        """When the origin's link layer began to serve it, its discovery included [ns].
+
+        The wait behind other messages lies between discovery and service; it is taken out by moving the
+        start, so that arrival - service_start is discovery and service alone (radio.md).
+        """
+        return -1 if self.first_service < 0 else self.first_service - self.discovery_before_service
+
+    def begin_search(self, now: int) -> None:
+        """Its origin has no route for it and looks for one."""
+        if self.searching_since < 0:
+            self.searching_since = now
+            self.searches += 1
+
+    def end_search(self, now: int) -> None:
+        """A route was found, or given up."""
+        if self.searching_since >= 0:
+            self.discovery += now - self.searching_since
+            self.searching_since = -1
+
+    def verdict(
+        self, data: "DataPacket", receiver: int, status: DeliveryStatus, arrival: int
+    ) -> Verdict:
+        """Its record as the log keeps it; arrival is -1 when it was lost."""
+        start = self.service_start
+        waited = 0 if start < 0 else start - self.offered
+        return Verdict(
+            message=self.number,
+            source=self.source,
+            destination=self.destination,
+            receiver=receiver,
+            status=status,
+            msdu_bytes=self.msdu_bytes,
+            path=data.path,
+            attempts=data.attempts,
+            offered_ns=self.offered,
+            service_start_ns=start,
+            arrival_ns=arrival,
+            discovery_ns=self.discovery,
+            queueing_ns=waited,
+            snr_db=self.sinr_db,
+            bit_error_rate=self.bit_error_rate,
+        )
+
+
+@dataclass(slots=True, eq=False)
+class DataPacket:
+    """A copy of a message in the hands of one robot, never changed. path, attempts: how it came there.
+
+    route, salvaged: the source route that it carries and how often it was mended (MRSR).
+    """
+
+    message: DataMessage
+    path: tuple[int, ...]
+    attempts: tuple[int, ...] = ()
+    route: tuple[int, ...] = ()
+    salvaged: int = 0
+
+    def tried(self, attempts: int) -> "DataPacket":
+        """The same copy after that many attempts at the next hop."""
+        tried = (*self.attempts, attempts)
+        return DataPacket(self.message, self.path, tried, self.route, self.salvaged)
+
+    def moved(self, holder: int, attempts: int) -> "DataPacket":
+        """The copy that the next robot holds."""
+        path, tried = (*self.path, holder), (*self.attempts, attempts)
+        return DataPacket(self.message, path, tried, self.route, self.salvaged)

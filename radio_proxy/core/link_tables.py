@@ -1,0 +1,130 @@
+"""The tables of `onehop link` and `onehop saturate`, out of the code that carries a mission's frames."""
+
+from dataclasses import dataclass
+
+from onehop.contracts.ideal_link import (
+    ACK_BYTES,
+    BASIC_RATE_MBPS,
+    RTS_BYTES,
+    ideal_throughput_bps,
+    threshold_bps,
+)
+from onehop.contracts.radio_section import RadioSection
+from radio_proxy.core.airtime import dsss, printed_throughput_bps
+from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized, frame_probability
+from radio_proxy.core.error_rates import bit_error_rate, thesis_ber
+from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.saturation import Saturation, pair, ring
+
+
+@dataclass(frozen=True, slots=True)
+class LinkRow:
+    """One distance. snr_db: mean; ber: at that SNR, thesis_ber: by eq. 3.24, 3.25 read literally.
+
+    frame_success: P(a data frame gets through) over the fading. closed_form_bps: throughput of one
+    saturated sender by theory. The rest is measured on it; delay_us is None when nothing arrives.
+    """
+
+    distance_m: float
+    snr_db: float
+    ber: float
+    thesis_ber: float
+    frame_success: float
+    closed_form_bps: float
+    delivery_ratio: float
+    throughput_bps: float
+    delay_us: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class LinkTable:
+    """Link budget over distance, with the bounds that a follower compares with."""
+
+    rows: tuple[LinkRow, ...]
+    ideal_throughput_bps: float
+    eq_3_16_throughput_bps: float
+    threshold_bps: float
+
+
+@dataclass(frozen=True, slots=True)
+class SaturationTable:
+    """Saturated stations in one cell: measured, and by Bianchi's formula. normalized: share of time."""
+
+    stations: int
+    throughput_bps: float
+    normalized: float
+    bianchi_normalized: float
+    per_station_bps: tuple[float, ...]
+
+
+def link_table(
+    section: RadioSection, distances: tuple[float, ...], msdu_bytes: int, seed: int, seconds: float
+) -> LinkTable:
+    """The link at each distance [m]; `seconds` of simulated time are measured for each."""
+    rts_cts = msdu_bytes > section.rts_threshold_bytes
+    header = section.mac_header_bytes
+    return LinkTable(
+        rows=tuple(_link_row(section, distance, msdu_bytes, seed, seconds) for distance in distances),
+        ideal_throughput_bps=ideal_throughput_bps(section.rate_mbps, msdu_bytes, rts_cts, header),
+        eq_3_16_throughput_bps=printed_throughput_bps(section.rate_mbps, msdu_bytes),
+        threshold_bps=threshold_bps(section.rate_mbps, msdu_bytes),
+    )
+
+
+def _link_row(
+    section: RadioSection, distance: float, msdu_bytes: int, seed: int, seconds: float
+) -> LinkRow:
+    budget, timing = link_budget(section), dsss(section)
+    snr_db = budget.mean_snr_db(distance)
+    size_bytes = timing.mac_header_bytes + msdu_bytes
+    load = pair(distance, msdu_bytes, msdu_bytes > section.rts_threshold_bytes)
+    per_exchange = section.fading == "exchange"
+    tally = Saturation(load, timing, budget, seed, section.retry_limit, per_exchange).run(seconds)
+    delivered = tally.delivered[0]
+    settled = delivered + tally.given_up
+    success = frame_probability(budget, snr_db, section.rate_mbps, size_bytes)
+    return LinkRow(
+        distance_m=distance,
+        snr_db=snr_db,
+        ber=bit_error_rate(section.rate_mbps, snr_db),
+        thesis_ber=thesis_ber(snr_db, 8 * msdu_bytes),
+        frame_success=success,
+        closed_form_bps=_closed_form_bps(section, snr_db, msdu_bytes, success),
+        delivery_ratio=delivered / settled if settled else 0.0,
+        throughput_bps=8.0 * msdu_bytes * delivered / seconds,
+        delay_us=tally.delay / delivered / 1000.0 if delivered else None,
+    )
+
+
+def _closed_form_bps(
+    section: RadioSection, snr_db: float, msdu_bytes: int, data_success: float
+) -> float:
+    """Throughput of one saturated sender by the sum over its attempts."""
+    budget, rts_cts = link_budget(section), msdu_bytes > section.rts_threshold_bytes
+    theory = SaturatedLink(dsss(section), msdu_bytes, section.retry_limit, rts_cts)
+    if section.fading == "exchange":
+        return 1e6 * theory.one_draw_per_exchange(data_success)[1]
+    rts, ack = (
+        frame_probability(budget, snr_db, BASIC_RATE_MBPS, size) for size in (RTS_BYTES, ACK_BYTES)
+    )
+    return 1e6 * theory.one_draw_per_frame(rts, ack, data_success, ack)[1]
+
+
+def saturation_table(
+    section: RadioSection, stations: int, msdu_bytes: int, rts_cts: bool, seed: int, seconds: float
+) -> SaturationTable:
+    """`stations` of one cell that always have a message, without fading, for `seconds` of time."""
+    timing = dsss(section)
+    budget = link_budget(section).without_fading()
+    tally = Saturation(
+        ring(stations, msdu_bytes, rts_cts), timing, budget, seed, section.retry_limit
+    ).run(seconds)
+    bits = 8.0 * msdu_bytes
+    throughput_bps = bits * sum(tally.delivered) / seconds
+    return SaturationTable(
+        stations=stations,
+        throughput_bps=throughput_bps,
+        normalized=throughput_bps / (1e6 * section.rate_mbps),
+        bianchi_normalized=bianchi_normalized(stations, timing, msdu_bytes, rts_cts),
+        per_station_bps=tuple(bits * delivered / seconds for delivered in tally.delivered),
+    )

@@ -1,0 +1,143 @@
+"""Which beams of a leader's laser hit its own followers, and what the scan would be without them.
+
+A planner that takes team mates for walls finds itself locked in by them, and one that leaves their beams
+out takes what they hide for a way on. So they are painted over: a wall on both sides of a mate goes on
+behind it. A follower is a disc of a robot's size in the scan, where the follower's last report lets it
+be by now; or it is whatever is seen right where a follower reported itself. Whatever is none of that
+stays an obstacle.
+
+The disc is found by a matched filter: with the hull of a robot before every beam in turn, the ranges
+around it are known, and the scan must agree with them. So a robot is found beside a wall and half behind
+another robot as well, where it does not stand free.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from onehop.contracts import elementary
+from onehop.contracts.arrays import FloatArray, Ranges
+from onehop.contracts.beams import Beams
+from onehop.contracts.geometry import Pose, to_local
+from onehop.contracts.sections import RobotSection
+
+HULL_ERROR = 0.05
+"""How far a range may be from that of a disc [m]: its middle need not lie on a beam."""
+
+INNER = 0.85
+"""Share of the radius within which ranges are compared [1]: at the rim a disc falls off too fast."""
+
+LEAST_SEEN = 0.6
+"""Share of the hull that must be seen; something nearer may hide the rest."""
+
+OPEN_SIDE = 0.25
+"""Change of range at one of the rims at least [m]: a flat wall far away looks like a flat hull."""
+
+LEAST_BEAMS = 3
+"""Beams that tell a disc from a post."""
+
+IntArray = npt.NDArray[np.intp]
+BoolArray = npt.NDArray[np.bool_]
+
+AT_HAND = 0.1
+"""A hit this near to the hull of a reported robot is that robot [m]."""
+
+
+SAME_WALL = 1.5
+"""Ratio of the ranges on both sides of a mate up to which they are taken for one wall."""
+
+
+def painted(scan: Ranges, mates: frozenset[int]) -> Ranges:
+    """The scan with these beams replaced by what their neighbours show.
+
+    One wall on both sides goes on straight (in polar form it is linear in 1/range over a small angle);
+    of two things the farther one does, because it is the one that the mate stands in front of.
+    """
+    if not mates:
+        return scan
+    hidden = np.zeros(len(scan), dtype=np.bool_)
+    hidden[np.fromiter(mates, dtype=np.intp, count=len(mates))] = True
+    beams, shown = np.flatnonzero(hidden), np.flatnonzero(~hidden)
+    clean = scan.copy()
+    if not len(shown):
+        clean[:] = np.inf
+        return clean
+    nearness = 1.0 / scan[shown]
+    between = np.interp(beams, shown, nearness)
+    place = np.searchsorted(shown, beams)
+    left, right = nearness[np.maximum(place - 1, 0)], nearness[np.minimum(place, len(shown) - 1)]
+    least = np.minimum(left, right)
+    one_wall = np.maximum(left, right) <= SAME_WALL * least
+    with np.errstate(divide="ignore"):
+        clean[beams] = 1.0 / np.where(one_wall, between, least)
+    return clean
+
+
+class FollowerDetector:
+    """Finds followers in scans."""
+
+    def __init__(self, body: RobotSection, fan: Beams) -> None:
+        self._radius = body.radius
+        self._range = fan.range
+        self._angles = fan.angles
+        self._directions = fan.directions
+        self._spacing = float(fan.angles[1] - fan.angles[0])
+
+    def beams(
+        self, pose: Pose, scan: Ranges, places: Sequence[tuple[float, float]], reach: float
+    ) -> frozenset[int]:
+        """Beams that hit a robot within `reach` of one of the places [m], map frame."""
+        sight = self._range + reach
+        own = [to_local(pose, x, y) for x, y in places]
+        own = [(x, y) for x, y in own if x > -reach and math.hypot(x, y) < sight]
+        seen = np.flatnonzero(scan <= self._range)
+        if not own or not len(seen):
+            return frozenset()
+        nearest = seen[self._nearest(scan)[seen]]
+        centres = self._directions[nearest] * (scan[nearest, None] + self._radius)
+        possible = nearest[_apart(centres, np.array(own)) <= reach]
+        found = self._discs(scan, possible)
+        hits = self._directions[seen] * scan[seen, None]
+        at_hand = seen[_apart(hits, np.array(own)) <= self._radius + AT_HAND]
+        return frozenset(found.tolist()).union(at_hand.tolist())
+
+    def _nearest(self, scan: Ranges) -> BoolArray:
+        """Which beams see no farther than their neighbours, as one on the middle of a disc does."""
+        edged = np.concatenate((scan[:1], scan, scan[-1:]))
+        nearest: BoolArray = (scan <= edged[:-2]) & (scan <= edged[2:])
+        return nearest
+
+    def _discs(self, scan: Ranges, middles: IntArray) -> IntArray:
+        """Beams of all discs of a robot's size whose middle is seen by one of these beams."""
+        if not len(middles):
+            return middles
+        radius, count = self._radius, len(scan)
+        far = scan[middles].astype(np.float64)[:, None] + radius
+        most = math.asin(min(1.0, radius / float(far.min())))
+        steps = np.arange(-int(most / self._spacing) - 1, int(most / self._spacing) + 2)
+        off_middle = np.multiply(steps, self._spacing, dtype=np.float64)
+        beside = far * elementary.sines(off_middle)
+        hull = far * elementary.cosines(off_middle)
+        hull -= np.sqrt(np.maximum(0.0, radius * radius - beside * beside))
+        place = middles[:, None] + steps
+        in_view = (place >= 0) & (place < count)
+        ranges = np.where(in_view, scan[np.clip(place, 0, count - 1)], np.inf)
+        off = ranges - hull
+        inner = (np.abs(beside) <= INNER * radius) & in_view
+        agrees = inner & (np.abs(off) <= HULL_ERROR)
+        enough = np.maximum(LEAST_SEEN * inner.sum(axis=1), LEAST_BEAMS)
+        outside = (np.abs(beside) > radius) & (np.abs(beside) <= 2.0 * radius) & in_view
+        free = (outside & (np.abs(ranges - scan[middles][:, None]) > OPEN_SIDE)).any(axis=1)
+        disc = free & (agrees.sum(axis=1) >= enough) & ~(inner & (off > HULL_ERROR)).any(axis=1)
+        rim = (np.abs(beside) <= 1.1 * radius) & in_view & (np.abs(off) <= radius)
+        found: IntArray = place[disc][rim[disc]]
+        return found
+
+
+def _apart(points: FloatArray, places: FloatArray) -> FloatArray:
+    """Distance of each point to the nearest place, (n,) [m]."""
+    between = points[:, None, :] - places[None, :, :]
+    apart: FloatArray = np.sqrt((between * between).sum(axis=2).min(axis=1, initial=np.inf))
+    return apart

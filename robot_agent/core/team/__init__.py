@@ -1,0 +1,1 @@
+"""The team protocol: rosters, modes, messages, and what each robot owes the others."""

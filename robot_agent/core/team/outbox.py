@@ -1,0 +1,38 @@
+"""What a robot has to say in one tick: messages for its network card, notes for people."""
+
+from collections.abc import Sequence
+
+from onehop.contracts.messages import Note, NoteValue, Transmission
+from robot_agent.core.team.team_messages import TeamMessage, encode
+
+
+class Outbox:
+    """Collects what is said until it is taken, once a tick."""
+
+    def __init__(self) -> None:
+        self._outbox: list[Transmission] = []
+        self._notes: list[Note] = []
+
+    def send(self, robot: int, message: TeamMessage, msdu_bytes: int) -> None:
+        """Hand a message for one robot, or for everyone, to the network card."""
+        self.send_to((robot,), message, msdu_bytes)
+
+    def send_to(self, robots: Sequence[int], message: TeamMessage, msdu_bytes: int) -> None:
+        """The same message for several robots, in this order. msdu_bytes: least size on the air."""
+        payload = encode(message)
+        size = max(msdu_bytes, len(payload))
+        self._outbox += [Transmission(robot, payload, size) for robot in robots]
+
+    def note(self, kind: str, **data: NoteValue) -> None:
+        """Tell people something."""
+        self._notes.append(Note(kind, dict(sorted(data.items()))))
+
+    def take_outbox(self) -> tuple[Transmission, ...]:
+        """What is to be sent, once."""
+        outbox, self._outbox = tuple(self._outbox), []
+        return outbox
+
+    def take_notes(self) -> tuple[Note, ...]:
+        """What is to be told, once."""
+        notes, self._notes = tuple(self._notes), []
+        return notes
