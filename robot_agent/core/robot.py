@@ -1,6 +1,6 @@
 """One robot: everything that it knows in, everything that it does out (`Percept -> Action`).
 
-CommandKind of a tick: hear (protocol), drive (planner when leading, tracking when following), speak.
+Order of a tick: hear (team protocol), drive (as leader or as follower), speak.
 """
 
 import math
@@ -8,26 +8,24 @@ import math
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.beams import Beams
 from onehop.contracts.briefings import Briefing
-from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map
+from onehop.contracts.geometry import STANDSTILL, Pose, Twist
 from onehop.contracts.ideal_link import THESIS_THRESHOLD_BPS, threshold_bps
 from onehop.contracts.messages import Action, Note, Percept
 from onehop.contracts.randomness import generator
 from onehop.contracts.team import Mode, Status
-from robot_agent.core.motion.follower import IN_POSITION, Follower
+from onehop.contracts.units import NANOSECONDS
+from robot_agent.core.motion.follower import Follower
 from robot_agent.core.motion.gains import make_policy
 from robot_agent.core.motion.leader import Leader, PathfinderMaker
 from robot_agent.core.motion.safety import SafetyFilter
+from robot_agent.core.motion.slot import Settling, shape_in_force, slot_pose
 from robot_agent.core.motion.tracking import sampled
-from robot_agent.core.motion.trail import behind
-from robot_agent.core.planning import make_pathfinder
-from robot_agent.core.team.formation import Formation, formation
-from robot_agent.core.team.modes import ModeEvent
+from robot_agent.core.planning import PlannerStatus, make_pathfinder
+from robot_agent.core.team.events import BecameFollower, BecameLeader, NextMeasured, TeamEvent
+from robot_agent.core.team.leader_view import LeaderView
+from robot_agent.core.team.part import Leading
 from robot_agent.core.team.protocol import TeamProtocol
-from robot_agent.core.team.standing import NANOSECONDS
 from robot_agent.core.team.team_messages import MissionPhase
-
-SETTLING_TICKS = 100
-"""Ticks without coming nearer to its last slot after which a follower stops where it is."""
 
 FOLLOWER_MODES = (Mode.FOLLOWING, Mode.NARROW, Mode.BORDER)
 
@@ -46,49 +44,44 @@ class Robot:
         self._briefing = briefing
         rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
         body, period = briefing.body, briefing.period_ns / NANOSECONDS
-        fan = Beams(body)
+        beams = Beams(body)
         gains = sampled(briefing.gains, period)
         dodge = tuple(float(share) for share in rng.random(64))
-        self._follower = Follower(body, gains, fan, dodge)
-        self._leader = Leader(briefing, gains, fan, make_pathfinder, rng)
-        self._safety = SafetyFilter(body, fan, period)
+        self._follower = Follower(body, gains, beams, dodge)
+        self._leader = Leader(briefing, gains, beams, make_pathfinder, rng)
+        self._safety = SafetyFilter(body, beams, period)
+        self._settling = Settling(period)
         self._threshold = required_throughput_bps(briefing)
-        self._policy = make_policy(briefing.gains, self._threshold)
         self._protocol: TeamProtocol | None = None
-        self._formation: Formation | None = None
-        self._formation_key: tuple[tuple[int, ...], bool] | None = None
-        self._slot_key: tuple[Pose, tuple[int, ...], bool, bool] | None = None
-        self._slot = Pose(0.0, 0.0, 0.0)
-        self._period_ns = round(briefing.team.next_period * NANOSECONDS)
         self._in_position = False
-        self._next_ns = 0
-        self._k_rho = briefing.gains.k_rho_min
-        self._throughput = 0.0
         self._error = 0.0
         self._target = (0.0, 0.0)
         self._remaining = 0.0
-        self._best_error = math.inf
-        self._settling = 0
-        self._notes: list[Note] = []
+        self._notes: tuple[Note, ...] = ()
+        self._reset_gain()
 
     def step(self, percept: Percept) -> Action:
         """Everything that the robot does at this tick. Bad messages are counted, never raised."""
+        now_ns, pose, scan = percept.time_ns, percept.pose, percept.scan
         protocol = self._protocol
         if protocol is None:
-            protocol = self._protocol = TeamProtocol(self._briefing, percept.time_ns)
-        now_ns, pose = percept.time_ns, percept.pose
+            protocol = self._protocol = TeamProtocol(self._briefing, now_ns, pose)
         protocol.receive(now_ns, pose, self._in_position, percept.inbox)
-        nearest = float(percept.scan.min())
-        if protocol.leading:
-            twist = self._lead(protocol, now_ns, pose, percept.scan, nearest)
+        for event in protocol.take_events():
+            self._on_event(event)
+        nearest = float(scan.min())
+        part = protocol.state.part
+        self._notes = ()
+        if isinstance(part, Leading):
+            twist = self._lead(protocol, part, now_ns, pose, scan, nearest)
         else:
-            twist = self._follow(protocol, now_ns, pose, percept.scan, nearest)
-        blind = self._briefing.gains.reverse and not protocol.leading
-        twist = self._safety.filtered(twist, percept.scan, nearest, blind)
-        if not (protocol.leading and protocol.mode is Mode.SETUP and twist.w):
-            protocol.speak(now_ns, self._told_pose(protocol, pose), self._leader.trail.points)
-        notes = (*self._notes, *protocol.take_notes())
-        self._notes = []
+            twist = self._follow(protocol, part.leader, pose, scan, nearest)
+        blind = self._briefing.gains.reverse and not isinstance(part, Leading)
+        twist = self._safety.filtered(twist, scan, nearest, blind)
+        leads = isinstance(part, Leading)
+        if not (leads and protocol.state.mode is Mode.SETUP and twist.w):
+            told = self._told_pose(protocol, pose) if leads else pose
+            protocol.speak(now_ns, told, self._leader.trail.points)
         return Action(
             tick=percept.tick,
             incarnation=self._briefing.incarnation,
@@ -97,7 +90,7 @@ class Robot:
             speed=abs(twist.v),
             remaining_distance=self._remaining,
             status=self._status(protocol),
-            notes=notes,
+            notes=(*self._notes, *protocol.take_notes()),
         )
 
     @property
@@ -106,14 +99,14 @@ class Robot:
         return dict(self._protocol.counters) if self._protocol is not None else {}
 
     def _status(self, protocol: TeamProtocol) -> Status:
-        leading = protocol.leading
+        state = protocol.state
         return Status(
-            mode=protocol.mode,
-            epoch=protocol.epoch,
-            leader=protocol.leader,
-            members=protocol.members,
-            shape=self._shape(protocol).shape,
-            throughput_bps=-1.0 if leading else self._throughput,
+            mode=state.mode,
+            epoch=state.roster.epoch,
+            leader=state.leader,
+            members=state.roster.members,
+            shape=shape_in_force(state, self._briefing.team).shape,
+            throughput_bps=-1.0 if isinstance(state.part, Leading) else self._throughput,
             threshold_bps=self._threshold,
             k_rho=self._k_rho,
             error=self._error,
@@ -121,123 +114,96 @@ class Robot:
             target_y=self._target[1],
         )
 
-    def _shape(self, protocol: TeamProtocol) -> Formation:
-        """Formation of the roster in force."""
-        key = (protocol.members, protocol.narrow)
-        if self._formation is None or key != self._formation_key:
-            team = self._briefing.team
-            spacing = team.narrow_spacing if protocol.narrow else team.spacing
-            self._formation = formation(protocol.members, protocol.narrow, spacing)
-            self._formation_key = key
-        return self._formation
+    def _on_event(self, event: TeamEvent) -> None:
+        """Each change of part starts afresh; each Next that was due counts for k_rho (thesis 3.5)."""
+        if isinstance(event, BecameLeader):
+            self._leader.begin()
+            self._follower.halt()
+        elif isinstance(event, BecameFollower):
+            self._reset_gain()
+        else:
+            self._throughput = event.throughput_bps if isinstance(event, NextMeasured) else 0.0
+            self._k_rho = self._policy.heard(self._throughput)
+
+    def _reset_gain(self) -> None:
+        """A follower that has not heard a Next yet is in no hurry."""
+        self._policy = make_policy(self._briefing.gains, self._threshold)
+        self._k_rho = self._briefing.gains.k_rho_min
+        self._throughput = 0.0
 
     def _lead(
-        self, protocol: TeamProtocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float
+        self,
+        protocol: TeamProtocol,
+        part: Leading,
+        now_ns: int,
+        pose: Pose,
+        scan: Ranges,
+        nearest: float,
     ) -> Twist:
         goal = self._briefing.goal
         self._target = (goal.x, goal.y)
         self._error = self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
         self._in_position = True
-        self._follower.halt()
-        twist = self._leader.step(protocol, now_ns, pose, scan, nearest)
-        self._notes.extend(self._leader.notes)
+        decision = self._leader.step(
+            protocol.state, part, now_ns, pose, scan, nearest, protocol.rules.trail
+        )
+        self._notes = decision.notes
         if self._leader.remaining > 0.0:
             self._remaining = self._leader.remaining
-        return twist
+        if decision.status is PlannerStatus.DRIVING:
+            protocol.order_column(decision.narrow, decision.passage)
+            protocol.keep_clear(decision.lane, decision.lane_is_news)
+        else:
+            protocol.end_mission(decision.status is PlannerStatus.ARRIVED)
+        return decision.twist
 
     def _follow(
-        self, protocol: TeamProtocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float
+        self, protocol: TeamProtocol, view: LeaderView, pose: Pose, scan: Ranges, nearest: float
     ) -> Twist:
-        self._leader.begin()
-        self._measure(protocol, now_ns)
-        link = protocol.link
-        leader = link.pose
+        state, leader = protocol.state, view.pose
         if leader is None:
             self._in_position = False
             self._target = (pose.x, pose.y)
             return STANDSTILL
-        target = self._slot_pose(protocol, leader)
-        self._target = (target.x, target.y)
-        self._error = math.hypot(target.x - pose.x, target.y - pose.y)
+        target = slot_pose(state, self._briefing.team, view, leader)
         goal = self._briefing.goal
+        self._target = (target.x, target.y)
         self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
-        self._settle(protocol)
-        if self._at_rest(protocol):
+        self._settling.watch(pose, target, state.phase is MissionPhase.DRIVING)
+        self._error = self._settling.error
+        self._in_position = self._is_in_position(protocol)
+        if self._is_at_rest(protocol):
             return STANDSTILL
-        if protocol.mode is Mode.GIVING_WAY:
-            return self._follower.draw_aside(pose, scan, link.lane)
-        moves = protocol.phase is MissionPhase.DRIVING
+        if state.mode is Mode.GIVING_WAY:
+            return self._follower.draw_aside(pose, scan, view.lane)
+        moves = state.phase is MissionPhase.DRIVING
         standoff = math.hypot(target.x - leader.x, target.y - leader.y)
         twist = self._follower.step(
-            pose, scan, nearest, target, link.trail, standoff, moves, self._k_rho
+            pose, scan, nearest, target, view.trail, standoff, moves, self._k_rho
         )
-        self._tell_border(protocol)
+        protocol.report_border(self._follower.border)
         return twist
 
     def _told_pose(self, protocol: TeamProtocol, pose: Pose) -> Pose:
         """What followers form up on: in profile `team` the course instead of the heading (trail.py)."""
-        if not protocol.open or not protocol.leading or protocol.mode is Mode.SETUP:
+        if not protocol.rules.trail or protocol.state.mode is Mode.SETUP:
             return pose
         return Pose(pose.x, pose.y, self._leader.trail.course(pose))
 
-    def _slot_pose(self, protocol: TeamProtocol, leader: Pose) -> Pose:
-        """This robot's slot in the map frame, from the leader's last pose."""
-        key = (leader, protocol.members, protocol.narrow, protocol.mode is Mode.JOINING)
-        if key != self._slot_key:
-            self._slot_key, self._slot = key, self._placed(protocol, leader)
-            self._best_error = math.inf
-        return self._slot
-
-    def _placed(self, protocol: TeamProtocol, leader: Pose) -> Pose:
-        shape = self._shape(protocol)
-        if protocol.mode is Mode.JOINING or shape.leader == self._briefing.robot:
-            x, y = to_map(leader, -self._briefing.team.spacing, 0.0)
-        else:
-            slot = shape.slot(self._briefing.robot)
-            if protocol.narrow and len(protocol.link.trail) > 1:
-                return behind(leader, protocol.link.trail, -slot.x)
-            x, y = to_map(leader, slot.x, slot.y)
-        return Pose(x, y, leader.heading)
-
-    def _measure(self, protocol: TeamProtocol, now_ns: int) -> None:
-        """Throughput of each Next, 0 for a missing one, and the gain that follows (thesis 3.5)."""
-        link = protocol.link
-        if link.next_ns > self._next_ns:
-            self._next_ns = link.next_ns
-            self._throughput = link.throughput_bps
-            self._k_rho = self._policy.heard(link.throughput_bps)
-        elif now_ns - self._next_ns > self._period_ns * 5 // 4:
-            self._next_ns += self._period_ns
-            self._throughput = 0.0
-            self._k_rho = self._policy.heard(0.0)
-
-    def _settle(self, protocol: TeamProtocol) -> None:
+    def _is_in_position(self, protocol: TeamProtocol) -> bool:
         """Whether the robot is in its slot, or, in profile `team`, as near to it as it can get.
 
         Differs: a slot may lie inside a wall; the thesis would wait for it until the setup timeout.
         """
-        if protocol.phase is MissionPhase.DRIVING or self._error < self._best_error - 0.05:
-            self._best_error, self._settling = self._error, 0
-        else:
-            self._settling += 1
-        near = protocol.open and self._error < self._briefing.team.spacing / 2.0
-        self._in_position = self._error <= IN_POSITION or (near and self._settling > SETTLING_TICKS)
+        near = protocol.rules.trail and self._error < self._briefing.team.spacing / 2.0
+        return self._settling.in_slot or (near and self._settling.settled)
 
-    def _at_rest(self, protocol: TeamProtocol) -> bool:
+    def _is_at_rest(self, protocol: TeamProtocol) -> bool:
         """At the end of the mission: stop in the slot, or where nothing more is gained."""
-        if protocol.mode is Mode.STOPPED and protocol.phase is not MissionPhase.FINAL:
-            return True
-        if protocol.phase is not MissionPhase.FINAL:
-            return False
-        rest = self._in_position or self._settling > SETTLING_TICKS
-        if protocol.mode in FOLLOWER_MODES and rest:
-            protocol.fire(ModeEvent.ARRIVED)
-        return protocol.mode is Mode.STOPPED
-
-    def _tell_border(self, protocol: TeamProtocol) -> None:
-        """Border following interrupts Algorithm 1 and resumes it (thesis 3.3.4)."""
-        border = self._follower.border
-        if border and protocol.mode in (Mode.FOLLOWING, Mode.NARROW):
-            protocol.fire(ModeEvent.OBSTRUCTED)
-        elif not border and protocol.mode is Mode.BORDER:
-            protocol.fire(ModeEvent.CLEARED_NARROW if protocol.narrow else ModeEvent.CLEARED)
+        state = protocol.state
+        if state.phase is not MissionPhase.FINAL:
+            return state.mode is Mode.STOPPED
+        rest = self._in_position or self._settling.settled
+        if state.mode in FOLLOWER_MODES and rest:
+            protocol.rest()
+        return state.mode is Mode.STOPPED

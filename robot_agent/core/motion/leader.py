@@ -9,6 +9,7 @@ its way nevertheless, the leader steers around them like a follower until it mov
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,6 +21,7 @@ from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map, wrap_angl
 from onehop.contracts.messages import Note
 from onehop.contracts.sections import GainsSection
 from onehop.contracts.team import Mode
+from onehop.contracts.units import NANOSECONDS
 from robot_agent.core.motion.follower_detector import FollowerDetector, painted
 from robot_agent.core.motion.lane import LaneRequest
 from robot_agent.core.motion.steering import LOOKAHEAD, Steering
@@ -27,10 +29,8 @@ from robot_agent.core.motion.tracking import turn_towards
 from robot_agent.core.motion.trail import Trail
 from robot_agent.core.planning import Guidance, Pathfinder, PlannerStatus
 from robot_agent.core.team.formation import formation, width
-from robot_agent.core.team.modes import ModeEvent
-from robot_agent.core.team.protocol import TeamProtocol
-from robot_agent.core.team.standing import NANOSECONDS
-from robot_agent.core.team.team_messages import MissionPhase
+from robot_agent.core.team.part import Leading
+from robot_agent.core.team.state import TeamState
 
 PathfinderMaker = Callable[[Briefing, Pose, np.random.Generator], Pathfinder]
 
@@ -56,6 +56,18 @@ MATES_NEAR = 1.0
 """Something this near is needed for a jam [m]."""
 
 
+class LeaderDecision(NamedTuple):
+    """What a leader does at a tick, and what it wants of its team."""
+
+    twist: Twist
+    narrow: bool
+    passage: float = math.inf
+    lane: tuple[tuple[float, float], ...] = ()
+    lane_is_news: bool = False
+    status: PlannerStatus = PlannerStatus.DRIVING
+    notes: tuple[Note, ...] = ()
+
+
 class Leader:
     """Drives one robot while it leads. `begin` at each election."""
 
@@ -78,7 +90,6 @@ class Leader:
         self._pathfinder: Pathfinder | None = None
         self.trail = Trail()
         self.remaining = 0.0
-        self.notes: tuple[Note, ...] = ()
         self._narrow_for = 0.0
         self._wide_for = 0.0
         self._still_at = (0.0, 0.0)
@@ -86,80 +97,72 @@ class Leader:
         self._unjam = 0.0
 
     def begin(self) -> None:
-        """A leadership ended; the next one starts with a new pathfinder and a new trail."""
-        if self.trail.points:
-            self._pathfinder = None
-            self.trail = Trail()
-            self._request.begin()
-            self._still_for = self._unjam = self._narrow_for = 0.0
+        """A leadership begins: with a new pathfinder and a new trail."""
+        self._pathfinder = None
+        self.trail = Trail()
+        self._request.begin()
+        self._still_for = self._unjam = self._narrow_for = 0.0
 
     def step(
-        self, protocol: TeamProtocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float
-    ) -> Twist:
-        """Twist for this tick; tells the protocol of narrow passages and of the end of the way."""
+        self, state: TeamState, part: Leading, now_ns: int, pose: Pose, scan: Ranges, nearest: float,
+        makes_room: bool,
+    ) -> LeaderDecision:  # fmt: skip
+        """What to do at this tick."""
         goal, body = self._briefing.goal, self._briefing.body
-        self.notes = ()
         self.trail.mark(pose)
-        if protocol.mode is Mode.SETUP:
+        if state.mode is Mode.SETUP:
             bearing = wrap_angle(elementary.atan2(goal.y - pose.y, goal.x - pose.x) - pose.heading)
-            return turn_towards(bearing, self._gains, body) if abs(bearing) >= ALIGNED else STANDSTILL
-        if protocol.mode is Mode.STOPPED:
-            return STANDSTILL
+            turn = turn_towards(bearing, self._gains, body) if abs(bearing) >= ALIGNED else STANDSTILL
+            return LeaderDecision(turn, state.narrow)
+        if state.mode is Mode.STOPPED:
+            return LeaderDecision(STANDSTILL, state.narrow)
         if self._pathfinder is None:
             self._pathfinder = self._make_pathfinder(self._briefing, pose, self._rng)
-        mates = self._mates(protocol, now_ns, pose, scan)
+        mates = self._mates(part, now_ns, pose, scan)
         guidance = self._pathfinder.step(pose, painted(scan, mates))
-        self.notes = guidance.notes
         self.remaining = guidance.remaining
         if guidance.progress is not PlannerStatus.DRIVING:
-            protocol.phase = MissionPhase.FINAL
-            protocol.keep_clear((), False)
-            protocol.fire(ModeEvent.ARRIVED)
-            protocol.note("arrived" if guidance.progress is PlannerStatus.ARRIVED else "no_way")
-            return STANDSTILL
-        self._watch_passage(protocol, guidance.passage)
-        if protocol.open:
+            return LeaderDecision(
+                STANDSTILL, state.narrow, status=guidance.progress, notes=guidance.notes
+            )
+        narrow = self._watch_passage(state, guidance.passage)
+        decision = LeaderDecision(guidance.twist, narrow, guidance.passage, notes=guidance.notes)
+        if makes_room:
             say = self._request.watch(pose, scan, mates, guidance.waypoint)
-            protocol.keep_clear(self._request.lane, say)
+            decision = decision._replace(lane=self._request.lane, lane_is_news=say)
             if self._request.wait:
-                return Twist(0.0, guidance.twist.w)
+                return decision._replace(twist=Twist(0.0, guidance.twist.w))
         if self._jammed(pose, nearest):
-            return self._around(pose, scan, guidance)
-        return self._waiting(protocol, guidance.twist)
+            return decision._replace(twist=self._around(pose, scan, guidance))
+        return decision._replace(twist=self._waiting(state, part, guidance.twist))
 
-    def _mates(self, protocol: TeamProtocol, now_ns: int, pose: Pose, scan: Ranges) -> frozenset[int]:
+    def _mates(self, part: Leading, now_ns: int, pose: Pose, scan: Ranges) -> frozenset[int]:
         """Beams that hit followers, as far as their reports say where they may be by now."""
-        leadership = protocol.leadership
-        if leadership is None or not leadership.reports:
+        reports = part.ledger.reports
+        if not reports:
             return frozenset()
-        age = (now_ns - leadership.opened_ns) / NANOSECONDS
+        age = (now_ns - part.schedule.commanded_ns) / NANOSECONDS
         reach = self._briefing.body.max_speed * age + MATE_TOLERANCE
-        places = [(report.pose.x, report.pose.y) for report in leadership.reports.values()]
+        places = [(report.pose.x, report.pose.y) for report in reports.values()]
         return self._lookout.beams(pose, scan, places, reach)
 
-    def _watch_passage(self, protocol: TeamProtocol, passage: float) -> None:
+    def _watch_passage(self, state: TeamState, passage: float) -> bool:
         """Narrow and back: column while the passage is too tight for the shape (thesis 3.3.1)."""
-        team, body = self._briefing.team, self._briefing.body
-        if len(protocol.members) < 3:
-            protocol.narrow = False
-            return
-        if 2.0 * body.radius < passage < WIDEST_PASSAGE and passage < self._needed(protocol):
+        team, body, members = self._briefing.team, self._briefing.body, state.roster.members
+        if len(members) < 3:
+            return False
+        if 2.0 * body.radius < passage < WIDEST_PASSAGE and passage < self._needed(members):
             self._wide_for = 0.0
             self._narrow_for += self._period
-            if not protocol.narrow and self._narrow_for >= NARROW_AFTER:
-                protocol.narrow = True
-                protocol.note("narrow", passage=passage)
-            return
+            return state.narrow or self._narrow_for >= NARROW_AFTER
         self._narrow_for = 0.0
         self._wide_for += self._period
-        column = team.narrow_spacing * len(protocol.members)
-        if protocol.narrow and self._wide_for * body.leader_speed > column:
-            protocol.narrow = False
-            protocol.note("wide", passage=passage)
+        column = team.narrow_spacing * len(members)
+        return state.narrow and self._wide_for * body.leader_speed <= column
 
-    def _needed(self, protocol: TeamProtocol) -> float:
+    def _needed(self, members: tuple[int, ...]) -> float:
         """Free width that the shape of the team needs [m]."""
-        shape = formation(protocol.members, False, self._briefing.team.spacing)
+        shape = formation(members, False, self._briefing.team.spacing)
         return width(shape) + 4.0 * self._briefing.body.radius
 
     def _jammed(self, pose: Pose, nearest: float) -> bool:
@@ -192,17 +195,16 @@ class Leader:
         speed = min(body.leader_speed, max(0.0, free))
         return Twist(speed * facing * facing, turn_towards(direction, self._gains, body).w)
 
-    def _waiting(self, protocol: TeamProtocol, twist: Twist) -> Twist:
+    def _waiting(self, state: TeamState, part: Leading, twist: Twist) -> Twist:
         """The same arc, slower while somebody straggles, if the scenario says so."""
         share = self._briefing.team.straggler_speed
-        leadership, told = protocol.leadership, protocol.link.pose
-        if share >= 1.0 or leadership is None or told is None:
+        if share >= 1.0:
             return twist
         spacing = self._briefing.team.spacing
-        for slot in formation(protocol.members, protocol.narrow, spacing).slots:
-            report = leadership.reports.get(slot.robot)
+        for slot in formation(state.roster.members, state.narrow, spacing).slots:
+            report = part.ledger.reports.get(slot.robot)
             if report is not None:
-                x, y = to_map(told, slot.x, slot.y)
+                x, y = to_map(part.told, slot.x, slot.y)
                 if math.hypot(report.pose.x - x, report.pose.y - y) > spacing:
                     return Twist(share * twist.v, share * twist.w)
         return twist

@@ -39,9 +39,9 @@ class ModeEvent(StrEnum):
     ELECTED = "elected"  # leads the roster in force
     LEFT_ALONE = "left alone"  # is the only member of the roster in force
     GAVE_WAY = "gave way"  # handed the team over to another leader
-    DISMISSED = "dismissed"  # its leader's roster lacks it
+    LEFT_OUT = "left out"  # its leader's roster lacks it
     ARRIVED = "arrived"  # at the goal, or in the last slot, or at the end of all ways
-    FORSAKEN = "forsaken"  # hears nobody, and stops (profile thesis, orphan = stop)
+    ORPHANED = "orphaned"  # hears nobody, and stops (profile thesis, orphan = stop)
 
 
 START, RESTART = Mode.SETUP, Mode.JOINING
@@ -59,8 +59,8 @@ _ANY = {
 _LED = {
     **_ANY,
     ModeEvent.LEADER_SILENT: Mode.LOST_LEADER,
-    ModeEvent.DISMISSED: Mode.JOINING,
-    ModeEvent.FORSAKEN: Mode.STOPPED,
+    ModeEvent.LEFT_OUT: Mode.JOINING,
+    ModeEvent.ORPHANED: Mode.STOPPED,
 }
 _ON_THE_WAY = {**_LED, ModeEvent.OBSTRUCTED: Mode.BORDER, ModeEvent.ARRIVED: Mode.STOPPED}
 
@@ -80,7 +80,7 @@ TABLE: dict[Mode, dict[ModeEvent, Mode]] = {
     },
     Mode.GIVING_WAY: {**_LED, ModeEvent.ARRIVED: Mode.STOPPED},
     Mode.LOST_LEADER: _LED,
-    Mode.JOINING: _LED,
+    Mode.JOINING: {**_ANY, ModeEvent.ORPHANED: Mode.STOPPED},
     Mode.STOPPED: {**_LED, ModeEvent.ARRIVED: Mode.STOPPED},
 }
 """mode -> event -> next mode: the whole state machine."""

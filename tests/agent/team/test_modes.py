@@ -6,6 +6,7 @@ import pytest
 
 from onehop.contracts.team import Mode
 from robot_agent.core.team.modes import RESTART, START, TABLE, ModeEvent, diagram, next_mode
+from robot_agent.core.team.part import MODES
 
 
 def test_every_mode_has_a_row_and_can_be_reached():
@@ -44,6 +45,12 @@ def test_every_mode_can_come_to_lead_and_to_follow():
 def test_a_transition_that_the_table_lacks_is_an_error_that_names_it():
     with pytest.raises(LookupError, match="no transition from leading on obstructed"):
         next_mode(Mode.LEADING, ModeEvent.OBSTRUCTED)
+
+
+def test_every_mode_belongs_to_a_part_and_every_part_can_reach_all_of_its_modes():
+    assert frozenset.union(*MODES.values()) == frozenset(Mode)
+    reached = {target for row in TABLE.values() for target in row.values()} | {START, RESTART}
+    assert all(modes <= reached for modes in MODES.values())
 
 
 def test_the_diagram_read_back_is_the_table():

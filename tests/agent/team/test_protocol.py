@@ -8,7 +8,7 @@ import pytest
 from onehop.contracts.geometry import Pose
 from onehop.contracts.sections import TeamSection
 from onehop.contracts.team import Mode, Shape
-from robot_agent.core.team.follower_ledger import JoinProbation
+from robot_agent.core.team.join_probation import JoinProbation
 from robot_agent.core.team.roster import Roster
 from robot_agent.core.team.team_messages import Beacon, Command, CommandKind, Join, MissionPhase, encode
 from tests.agent.team.team_net import TeamNet
@@ -277,6 +277,62 @@ def test_a_missing_next_counts_as_throughput_zero_and_the_follower_hurries():
     net.run(3.0)
     assert net.status(1).throughput_bps == 0.0
     assert net.status(1).k_rho == 3.0
+
+
+def gains_of(net, robot, seconds):
+    """k_rho of a robot at each tick in which it follows [1/s], from now on."""
+    gains = []
+    for _ in range(round(seconds * 4)):
+        net.step()
+        if robot not in net.leaders():
+            gains.append(net.status(robot).k_rho)
+    return gains
+
+
+@pytest.mark.parametrize("robot", [2, 5])
+def test_a_robot_that_led_for_long_begins_to_follow_without_hurry(robot):
+    """It was owed no Next while it led; as many as fit into that time were counted as missed."""
+    net = drive()
+    net.cut((1, 2, 3))
+    net.run(80.0)
+    assert robot in net.leaders()
+    net.heal()
+    gains = gains_of(net, robot, 2 * BOUND)
+    assert len(gains) > 40
+    assert set(gains) == {1.0}
+
+
+def test_a_restarted_robot_begins_with_the_gain_of_a_first_one():
+    net = drive()
+    net.kill(5)
+    net.run(60.0)
+    net.restart(5)
+    gains = gains_of(net, 5, 2 * BOUND)
+    assert net.agree()
+    assert set(gains) == {1.0}
+
+
+def test_a_follower_that_is_given_up_is_told_of_with_the_reason():
+    silent, late = drive(), TeamNet(thesis(setup_timeout=25.0))
+    silent.kill(6)
+    silent.run(10.0)
+    for _ in range(4 * 35):
+        late.paused[5] = late.tick + 1
+        late.step()
+    assert reasons(silent) == [((6,), "unanswered")]
+    assert reasons(late) == [((5,), "unanswered")]
+
+
+def test_who_answers_but_is_not_in_its_slot_at_setup_is_given_up_for_that():
+    net = TeamNet(thesis(setup_timeout=25.0))
+    for _ in range(4 * 30):
+        net.step()
+        net.members[5].pose = Pose(90.0, 90.0, 0.0)
+    assert reasons(net) == [((5,), "not in position at setup")]
+
+
+def reasons(net):
+    return [(n.data["robots"], n.data["reason"]) for _, _, n in net.notes if n.kind == "lost_follower"]
 
 
 def test_at_the_goal_everyone_stops_in_its_slot():

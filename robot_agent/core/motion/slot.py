@@ -1,0 +1,74 @@
+"""Where a follower belongs, and whether it has come to rest there (thesis 3.3, 3.5)."""
+
+import math
+
+from onehop.contracts.geometry import Pose, to_map
+from onehop.contracts.sections import TeamSection
+from robot_agent.core.motion.trail import behind
+from robot_agent.core.team.formation import Formation, formation
+from robot_agent.core.team.leader_view import LeaderView
+from robot_agent.core.team.part import Joining
+from robot_agent.core.team.state import TeamState
+
+IN_POSITION = 0.3
+"""A robot is in its slot within this distance [m]."""
+
+SETTLED_AFTER = 5.0
+"""Time without coming nearer to its slot after which a robot has come as near as it can [s]."""
+
+NEARER = 0.05
+"""Coming nearer by less than this is not coming nearer [m]."""
+
+
+def shape_in_force(state: TeamState, team: TeamSection) -> Formation:
+    """The formation of the roster in force, a column in a narrow passage."""
+    spacing = team.narrow_spacing if state.narrow else team.spacing
+    return formation(state.roster.members, state.narrow, spacing)
+
+
+def slot_pose(state: TeamState, team: TeamSection, view: LeaderView, leader: Pose) -> Pose:
+    """The slot of this robot in the map frame, from the leader's last pose.
+
+    Who has no slot in the formation (it joins, or led until now) keeps a spacing behind the leader.
+    """
+    shape = shape_in_force(state, team)
+    if isinstance(state.part, Joining) or shape.leader == state.robot:
+        x, y = to_map(leader, -team.spacing, 0.0)
+    else:
+        slot = shape.slot(state.robot)
+        if state.narrow and len(view.trail) > 1:
+            return behind(leader, view.trail, -slot.x)
+        x, y = to_map(leader, slot.x, slot.y)
+    return Pose(x, y, leader.heading)
+
+
+class Settling:
+    """Whether a robot is in its slot, or as near to it as it can get."""
+
+    def __init__(self, period: float) -> None:
+        """period: of a tick [s]."""
+        self._ticks = round(SETTLED_AFTER / period)
+        self._slot: Pose | None = None
+        self._best = math.inf
+        self._idle = 0
+        self.error = 0.0
+
+    def watch(self, pose: Pose, slot: Pose, moving: bool) -> None:
+        """Take one tick. moving: the team is on its way, and so is every slot."""
+        self.error = math.hypot(slot.x - pose.x, slot.y - pose.y)
+        if slot != self._slot:
+            self._slot, self._best = slot, math.inf
+        if moving or self.error < self._best - NEARER:
+            self._best, self._idle = self.error, 0
+        else:
+            self._idle += 1
+
+    @property
+    def in_slot(self) -> bool:
+        """In its slot (thesis 3.3.3)."""
+        return self.error <= IN_POSITION
+
+    @property
+    def settled(self) -> bool:
+        """No nearer to its slot for long."""
+        return self._idle > self._ticks
