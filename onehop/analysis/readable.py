@@ -63,9 +63,9 @@ def opened(payload: bytes) -> TeamMessage | None:
 def kind_of(message: TeamMessage | None) -> str:
     """Name of a team message as the thesis has it: Setup, Next, Narrow, Lost_Follower, Ack, ..."""
     if isinstance(message, Command):
-        if message.order is CommandKind.NEXT and message.phase is MissionPhase.SETUP:
+        if message.kind is CommandKind.NEXT and message.phase is MissionPhase.SETUP:
             return "Setup"
-        return _ORDERS[message.order]
+        return _ORDERS[message.kind]
     return "garbled" if message is None else type(message).__name__
 
 

@@ -39,10 +39,11 @@ class Election:
         self._probation = JoinProbation()
         self._asked_ns = now_ns - self._period_ns
 
-    def merge(self, now_ns: int, source: int, epoch: int, members: tuple[int, ...]) -> None:
+    def merge(
+        self, now_ns: int, part: Leading, source: int, epoch: int, members: tuple[int, ...]
+    ) -> None:
         """A leader met a stranger: take it and those it speaks for in, once it is known well enough."""
-        part, mine = self._state.part, self._state.roster
-        assert isinstance(part, Leading)
+        mine = self._state.roster
         if self._probation.meet(source, now_ns // self._period_ns):
             merged = mine.merged(epoch, members)
             joined = tuple(i for i in merged.members if i not in mine.members)
@@ -55,11 +56,11 @@ class Election:
         self._probation.give_up(lost)
         self._outbox.note("roster", epoch=roster.epoch, members=roster.members, lost=lost)
         if roster.leader == self._state.robot:
-            state.keep_leading(roster)
+            state.keep_leading(part, roster)
             part.schedule.urgent = True
             return
         state.adopt(roster)
-        command = state.command(CommandKind.LOST_FOLLOWER, lost, ())
+        command = state.command(part, CommandKind.LOST_FOLLOWER, lost, ())
         patience_ns = HANDOVER_PERIODS * self._period_ns
         handover = Handover(command, now_ns)
         state.become_waiting(now_ns, patience_ns, ModeEvent.GAVE_WAY, handover)

@@ -1,7 +1,7 @@
 """The team protocol of one robot: whom it obeys, when it gives somebody up, what it sends.
 
-Messages and rules of the thesis (3.3.3 to 3.3.5, 4.3). What profile `team` does otherwise is in rules.py,
-how rosters change in election.py. Nothing here moves a robot.
+Messages and rules of the thesis (3.3.3 to 3.3.5, 4.3). What profile `team` does otherwise is in
+rules.py, how rosters change in election.py. Nothing here moves a robot.
 
 Theory of operation. A robot acts as leader while the roster in force names it. A leader sends a command
 to each follower once a period and counts those that do not answer. A follower that hears no leader for
@@ -175,9 +175,7 @@ class TeamProtocol:
     ) -> None:
         """Next, Narrow, Lost_Follower or Make_Room of the leader that this robot obeys."""
         state = self.state
-        state.become_follower(now_ns, command.pose, command.roster)
-        assert isinstance(state.part, Following)
-        leader = state.part.leader
+        leader = state.become_follower(now_ns, command.pose, command.roster)
         leader.lane = command.lane
         leader.on_next(now_ns, command.pose, command.trail)
         state.obey(command.phase, command.narrow, leader.lane)
@@ -195,7 +193,7 @@ class TeamProtocol:
     def _on_handover(self, now_ns: int, pose: Pose, source: int, command: Command) -> None:
         """Lost_Follower from a leader that gives way: the roster names somebody else."""
         state, roster = self.state, command.roster
-        accepted = command.order is CommandKind.LOST_FOLLOWER and self.rules.accepts_handover(
+        accepted = command.kind is CommandKind.LOST_FOLLOWER and self.rules.accepts_handover(
             state.roster, source, roster
         )
         if not accepted:
@@ -212,9 +210,8 @@ class TeamProtocol:
         if source != roster.leader or not self._known.issuperset(roster.members):
             self.counters["foreign"] += 1
         elif self.robot in roster.members and self._obeys(now_ns, source, roster):
-            state.become_follower(now_ns, beacon.pose, roster)
-            assert isinstance(state.part, Following)
-            state.obey(beacon.phase, beacon.narrow, state.part.leader.lane)
+            leader = state.become_follower(now_ns, beacon.pose, roster)
+            state.obey(beacon.phase, beacon.narrow, leader.lane)
         elif isinstance(state.part, Joining) or (
             not isinstance(state.part, Leading)
             and source == state.roster.leader
@@ -227,9 +224,10 @@ class TeamProtocol:
 
     def _on_other_leader(self, now_ns: int, pose: Pose, source: int, roster: Roster) -> None:
         """Another leader is in reach whose roster is not to be obeyed."""
-        meeting = self.rules.on_meeting(self.state.part, source, self.state.roster)
-        if meeting is Meeting.MERGE:
-            self._election.merge(now_ns, source, roster.epoch, roster.members)
+        part = self.state.part
+        meeting = self.rules.on_meeting(part, source, self.state.roster)
+        if isinstance(part, Leading) and meeting is Meeting.MERGE:
+            self._election.merge(now_ns, part, source, roster.epoch, roster.members)
         elif meeting is Meeting.ASK:
             self._election.ask(now_ns, pose, source)
         else:
@@ -245,7 +243,7 @@ class TeamProtocol:
             else:
                 self.counters["stale"] += 1
         elif source not in state.roster.members:
-            self._election.merge(now_ns, source, join.epoch, (source,))
+            self._election.merge(now_ns, part, source, join.epoch, (source,))
         elif join.epoch > state.roster.epoch:
             self._election.change_roster(now_ns, part, state.roster.merged(join.epoch, ()), ())
         elif now_ns - part.schedule.commanded_ns >= self.rules.successor_patience_ns // 2:
@@ -284,10 +282,10 @@ class TeamProtocol:
         if due:
             schedule.open_period(now_ns, self._period_ns)
         schedule.next_command(now_ns)
-        order = CommandKind.NARROW if self.state.narrow else CommandKind.NEXT
+        kind = CommandKind.NARROW if self.state.narrow else CommandKind.NEXT
         if lost or part.lane:
-            order = CommandKind.LOST_FOLLOWER if lost else CommandKind.MAKE_ROOM
-        command = self.state.command(order, lost, tuple(trail) if self.rules.trail else ())
+            kind = CommandKind.LOST_FOLLOWER if lost else CommandKind.MAKE_ROOM
+        command = self.state.command(part, kind, lost, tuple(trail) if self.rules.trail else ())
         self._outbox.send_to(part.ledger.followers, command, self._team.next_msdu_bytes)
         if self.rules.beacons:
             beacon = Beacon(command.roster, command.phase, command.narrow, pose)

@@ -80,8 +80,8 @@ class TeamState:
         self.on(self._election)
         self._outbox.note("elected", epoch=self.roster.epoch, members=self.roster.members)
 
-    def become_follower(self, now_ns: int, pose: Pose, roster: Roster) -> None:
-        """Obey the leader of this roster, whose voice was just heard at this pose."""
+    def become_follower(self, now_ns: int, pose: Pose, roster: Roster) -> LeaderView:
+        """Obey the leader of this roster, whose voice was just heard at this pose; the view of it."""
         if isinstance(self.part, Leading):
             self._outbox.note("yielded", leader=roster.leader, epoch=roster.epoch)
         view = self._view(now_ns)
@@ -91,6 +91,7 @@ class TeamState:
         if not isinstance(self.part, Following):
             self.part = Following(view)
         view.on_word(now_ns, pose)
+        return view
 
     def become_waiting(
         self, now_ns: int, patience_ns: int, event: ModeEvent | None, handover: Handover | None = None
@@ -110,11 +111,10 @@ class TeamState:
         if self.mode is not Mode.JOINING:
             self.on(ModeEvent.LEFT_OUT)
 
-    def keep_leading(self, roster: Roster) -> None:
+    def keep_leading(self, part: Leading, roster: Roster) -> None:
         """Go on as the leader of another roster."""
-        assert isinstance(self.part, Leading)
         self.adopt(roster)
-        self.part.ledger.adopt(self.followers)
+        part.ledger.adopt(self.followers)
         if self.phase is MissionPhase.DRIVING:
             self.on(self._election)
 
@@ -137,12 +137,11 @@ class TeamState:
         else:
             self.on(ModeEvent.TOLD_NARROW if narrow else ModeEvent.TOLD_NEXT)
 
-    def command(self, order: CommandKind, lost: tuple[int, ...], trail: Points) -> Command:
+    def command(self, part: Leading, kind: CommandKind, lost: tuple[int, ...], trail: Points) -> Command:
         """What this robot commands as leader now. lost: given up with this roster."""
-        assert isinstance(self.part, Leading)
         return Command(
-            order, self.roster, self.part.schedule.sequence, self.phase, self.narrow, self.part.told,
-            lost, trail, self.part.lane,
+            kind, self.roster, part.schedule.sequence, self.phase, self.narrow, part.told, lost, trail,
+            part.lane,
         )  # fmt: skip
 
     def _leading(self, now_ns: int, pose: Pose) -> Leading:

@@ -56,7 +56,7 @@ class Command:
     two ends of the piece of its way that is to be kept clear [m]; empty when none is.
     """
 
-    order: CommandKind
+    kind: CommandKind
     roster: Roster
     sequence: int
     phase: MissionPhase
@@ -137,7 +137,7 @@ def _centimetres(points: tuple[tuple[float, float], ...]) -> list[int]:
 
 def _encode_command(message: Command) -> tuple[str, Fields]:
     return "command", [
-        message.order.value, message.roster.epoch, message.roster.members, message.sequence,
+        message.kind.value, message.roster.epoch, message.roster.members, message.sequence,
         message.phase.value, message.narrow, *_pose_fields(message.pose), message.lost,
         _centimetres(message.trail), _centimetres(message.lane),
     ]  # fmt: skip
@@ -159,9 +159,9 @@ def _encode_join(message: Join) -> tuple[str, Fields]:
 
 
 def _decode_command(fields: Fields) -> Command:
-    order, epoch, members, sequence, phase, narrow, x, y, heading, lost, trail, lane = fields
+    kind, epoch, members, sequence, phase, narrow, x, y, heading, lost, trail, lane = fields
     return Command(
-        order=_word(CommandKind, order),
+        kind=_word(CommandKind, kind),
         roster=_roster(epoch, members),
         sequence=_whole(sequence),
         phase=_word(MissionPhase, phase),
