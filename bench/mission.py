@@ -19,7 +19,7 @@ from typing import Any
 from onehop.drivers import inline
 from onehop.mission import launcher
 from onehop.scenario import scenario_file
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 from onehop.wire.journal import Journal
 from onehop.wire.log_writer import LogWriter
 

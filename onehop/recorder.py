@@ -15,7 +15,7 @@ from onehop.contracts.briefings import LogBriefing
 from onehop.contracts.messages import End
 from onehop.node import startup
 from onehop.node.bus import GONE, Bus
-from onehop.scenario.scenario_file import bundle_from_json
+from onehop.scenario.bundle import bundle_from_json
 from onehop.wire.batch import unpack_ticks
 from onehop.wire.codec import decode
 from onehop.wire.journal import Journal, WireMessage

@@ -20,7 +20,7 @@ from onehop.maps.map_file import load_map
 from onehop.node import startup
 from onehop.node.bus import ALIVE, Bus, open_router
 from onehop.scenario import scenario_file
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 from onehop.wire.batch import TickMessages, pack_tick, pack_ticks, unpack_tick
 from onehop.wire.codec import decode, encode
 from onehop.wire.journal import WireMessage

@@ -12,7 +12,7 @@ from onehop.analysis.palette import BAD, INK, WALL, WALL_EDGE
 from onehop.contracts.scenario import Scenario
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 
 _RASTER = 700
 """Points along the longer side at which a grid map is asked what is filled."""

@@ -21,7 +21,7 @@ from onehop.contracts.errors import InputError
 from onehop.contracts.messages import Action, Inbox, Observation, RadioRecord, Truth
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.values import Wire
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import decode
 from onehop.wire.log_reader import LogFile
 from onehop.wire.selection import Selected, one_of, select

@@ -8,7 +8,7 @@ from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
 from onehop.drivers.replay import Divergence, Report
 from onehop.drivers.replay import replay as re_execute
-from onehop.scenario import scenario_file
+from onehop.scenario.bundle import changed
 
 
 def replay(
@@ -37,7 +37,7 @@ def replay(
         parts=robot is None,
         first_tick=0 if first_s is None else round(first_s / period),
         last_tick=None if last_s is None else round(last_s / period),
-        scenario=scenario_file.changed(scenario, settings) if settings else None,
+        scenario=changed(scenario, settings) if settings else None,
     )
     if as_json:
         emit_json(_as_json(report))

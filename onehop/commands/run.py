@@ -10,7 +10,7 @@ from onehop.commands.output import emit_json, say, stdout, table
 from onehop.contracts.messages import Action, Progress, RobotProgress
 from onehop.mission.progress import Display
 from onehop.scenario import scenario_file
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 from onehop.wire.summary import summarize
 
 SHOW_S = 0.2

@@ -6,7 +6,7 @@ from onehop.contracts import topics
 from onehop.contracts.briefings import radio_briefing, robot_briefing
 from onehop.contracts.messages import Action, Outcome, percept
 from onehop.maps.map_file import load_map
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
 from onehop.wire.journal import Journal, WireMessage
 from radio_proxy.core.radio import Radio

@@ -23,7 +23,7 @@ from zstandard import ZstdError
 
 from onehop.contracts.errors import LogError
 from onehop.contracts.values import WIRE_VERSION
-from onehop.scenario.scenario_file import Bundle, bundle_from_json
+from onehop.scenario.bundle import Bundle, bundle_from_json
 from onehop.wire.journal import Digest, WireMessage, canonical_rank
 from onehop.wire.log_writer import MAP_ATTACHMENT, SCENARIO_ATTACHMENT
 from onehop.wire.selection import select, walk

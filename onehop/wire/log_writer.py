@@ -17,7 +17,7 @@ from mcap.writer import CompressionType, Writer
 from onehop import __version__
 from onehop.contracts import topics
 from onehop.contracts.values import WIRE_VERSION
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 from onehop.wire.journal import WireMessage
 
 LOG_EPOCH_NS = 1_000_000_000 * 1_000_000_000

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from onehop.drivers import inline
 from onehop.scenario import scenario_file
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 from onehop.wire.journal import Journal, WireMessage
 from onehop.wire.log_writer import LogWriter
 from onehop.wire.summary import summarize

@@ -15,7 +15,7 @@ from onehop.contracts.sections import (
     TeamSection,
 )
 from onehop.drivers.inline import run
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 from onehop.wire.journal import Journal
 from onehop.wire.log_writer import LogWriter
 from onehop.wire.summary import summarize

@@ -10,7 +10,7 @@ import numpy as np
 
 from onehop.analysis import Log, open_log
 from onehop.analysis.difference import compare
-from onehop.scenario.scenario_file import Bundle
+from onehop.scenario.bundle import Bundle
 from onehop.wire.log_reader import LogFile
 from onehop.wire.log_writer import LogWriter
 

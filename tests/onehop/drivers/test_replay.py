@@ -7,7 +7,7 @@ import pytest
 
 from onehop.contracts import topics
 from onehop.drivers.replay import replay
-from onehop.scenario import scenario_file
+from onehop.scenario.bundle import changed
 from onehop.wire.difference import first_difference
 from onehop.wire.log_reader import LogFile
 from onehop.wire.log_writer import LogWriter
@@ -82,7 +82,7 @@ def test_only_the_asked_robot_and_time_are_compared(recorded: Path, tmp_path: Pa
 
 def test_what_if_names_the_first_action_that_would_differ(recorded: Path) -> None:
     log = LogFile(recorded)
-    slower = scenario_file.changed(log.bundle.scenario, ["robot.leader_speed=0.5"])
+    slower = changed(log.bundle.scenario, ["robot.leader_speed=0.5"])
     report = replay(log, robots=(3,), parts=False, scenario=slower)
     assert report.first is not None
     assert (report.first.robot, report.first.field) == (3, "twist.v")

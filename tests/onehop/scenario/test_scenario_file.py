@@ -7,6 +7,7 @@ import pytest
 from onehop.contracts.briefings import Briefing, robot_briefing
 from onehop.contracts.errors import ScenarioError
 from onehop.scenario import scenario_file
+from onehop.scenario.bundle import bundle_from_json
 from onehop.wire.codec import decode, encode
 from tests.onehop.scenes import FIELD, field
 
@@ -28,7 +29,7 @@ def test_what_is_not_given_has_its_default(tmp_path: Path) -> None:
 
 def test_a_bundle_survives_its_own_json(tmp_path: Path) -> None:
     bundle = field(tmp_path, "seed=9")
-    assert scenario_file.bundle_from_json(bundle.scenario_json(), bundle.files, "log") == bundle
+    assert bundle_from_json(bundle.scenario_json(), bundle.files, "log") == bundle
 
 
 def test_a_robot_is_briefed_without_the_map(tmp_path: Path) -> None:
@@ -148,4 +149,4 @@ def test_what_a_robot_is_told_crosses_the_wire(tmp_path: Path) -> None:
 
 def test_a_bundle_reads_back_from_its_json(tmp_path: Path) -> None:
     bundle = field(tmp_path)
-    assert scenario_file.bundle_from_json(bundle.scenario_json(), bundle.files, "test") == bundle
+    assert bundle_from_json(bundle.scenario_json(), bundle.files, "test") == bundle
