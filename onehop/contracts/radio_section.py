@@ -2,9 +2,10 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
-from onehop.contracts.problems import Problem, positive
+from onehop.contracts.problems import Problem
+from onehop.contracts.ranges import Range
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,43 +29,27 @@ class RadioSection:
     """
 
     preset: Literal["thesis", "physical"] = "thesis"
-    rate_mbps: float = 1.0
-    retry_limit: int = 7
-    tx_power_dbm: float | None = None
-    path_loss_exponent: float | None = None
-    noise_dbm: float | None = None
-    shadowing_db: float | None = None
-    receive_threshold_db: float | None = None
-    carrier_sense_db: float | None = None
-    frequency_hz: float = 2.4e9
-    antenna_gain_dbi: float = 0.0
-    system_loss_db: float = 0.0
-    reference_distance: float = 1.0
+    rate_mbps: Annotated[float, Range(1.0, 11.0)] = 1.0
+    retry_limit: Annotated[int, Range(1, 255)] = 7
+    tx_power_dbm: Annotated[float, Range(-100.0, 100.0)] | None = None
+    path_loss_exponent: Annotated[float, Range(1.0, 10.0)] | None = None
+    noise_dbm: Annotated[float, Range(-200.0, 100.0)] | None = None
+    shadowing_db: Annotated[float, Range(0.0, 40.0)] | None = None
+    receive_threshold_db: Annotated[float, Range(-50.0, 100.0)] | None = None
+    carrier_sense_db: Annotated[float, Range(-50.0, 100.0)] | None = None
+    frequency_hz: Annotated[float, Range(1e6, 1e12)] = 2.4e9
+    antenna_gain_dbi: Annotated[float, Range(-50.0, 50.0)] = 0.0
+    system_loss_db: Annotated[float, Range(-100.0, 100.0)] = 0.0
+    reference_distance: Annotated[float, Range(1e-3, 1e3)] = 1.0
     fading: Literal["frame", "exchange"] = "frame"
-    wall_loss_db: float = 0.0
-    rts_threshold_bytes: int = 0
-    mac_header_bytes: int = 34
-    cts_timeout_us: float = 222.0
-    queue_frames: int = 64
+    wall_loss_db: Annotated[float, Range(0.0, 1e3)] = 0.0
+    rts_threshold_bytes: Annotated[int, Range(0, 2304)] = 0
+    mac_header_bytes: Annotated[int, Range(1, 100)] = 34
+    cts_timeout_us: Annotated[float, Range(222.0, 1e5)] = 222.0
+    queue_frames: Annotated[int, Range(1, 100_000)] = 64
     routing: Literal["direct", "mrsr", "mrdv"] = "mrdv"
-    gamma_distance: float = 10.0
+    gamma_distance: Annotated[float, Range(1e-3, 1e9)] = 10.0
 
     def problems(self) -> Iterator[Problem]:
         if self.rate_mbps not in (1.0, 2.0, 5.5, 11.0):
             yield Problem("rate_mbps", f"{self.rate_mbps} Mb/s", "1, 2, 5.5 or 11 (802.11b)")
-        above_zero = (
-            "retry_limit frequency_hz reference_distance mac_header_bytes queue_frames gamma_distance"
-        )
-        yield from positive(self, *above_zero.split())
-        for key in ("wall_loss_db", "rts_threshold_bytes", "shadowing_db"):
-            value = getattr(self, key)
-            if value is not None and value < 0:
-                yield Problem(key, f"{value} is negative", "0 or more")
-        if self.path_loss_exponent is not None and self.path_loss_exponent < 1:
-            yield Problem("path_loss_exponent", f"{self.path_loss_exponent} < 1", "2 is free space")
-        if self.cts_timeout_us < 222.0:
-            yield Problem(
-                "cts_timeout_us",
-                f"{self.cts_timeout_us} us ends before an answer can begin",
-                "222 or more",
-            )

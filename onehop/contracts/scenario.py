@@ -4,11 +4,14 @@ Reading files is onehop/scenario's work; here are the values, their defaults wit
 the conditions that they must fulfil (`problems`).
 """
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from typing import Annotated
 
 from onehop.contracts.problems import Problem
 from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.ranges import Range, out_of_range
 from onehop.contracts.sections import (
     ClockSection,
     FaultSection,
@@ -21,6 +24,9 @@ from onehop.contracts.sections import (
     TeamSection,
 )
 
+NAME = re.compile(r"\w[\w.+ -]{0,99}")
+"""What a scenario may be called: its log's folder bears the name."""
+
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
@@ -30,7 +36,7 @@ class Scenario:
     goal: GoalSection
     map: MapSection
     start: StartSection = field(default_factory=StartSection)
-    seed: int = 1
+    seed: Annotated[int, Range(0, 2**63 - 1)] = 1
     team: TeamSection = field(default_factory=TeamSection)
     robot: RobotSection = field(default_factory=RobotSection)
     gains: GainsSection = field(default_factory=GainsSection)
@@ -40,14 +46,17 @@ class Scenario:
     faults: tuple[FaultSection, ...] = ()
 
     def problems(self) -> Iterator[Problem]:
-        """Everything that keeps this mission from being run, first the sections, then across them."""
-        for section in (
-            "map", "start", "goal", "team", "robot", "gains", "planner", "radio", "clock",
-        ):  # fmt: skip
+        """Everything that keeps this mission from being run: ranges, sections, then across them."""
+        if not NAME.fullmatch(self.name):
+            yield Problem(
+                "name",
+                f"{self.name!r:.60} is no name",
+                "at most 100 letters, digits, spaces or . _ + -",
+            )
+        yield from out_of_range(self)
+        for section in ("map", "team", "gains", "radio"):
             for problem in getattr(self, section).problems():
                 yield problem._replace(key=f"{section}.{problem.key}")
-        if self.seed < 0:
-            yield Problem("seed", f"{self.seed} is negative", "a whole number from 0")
         robots = self.team.robots
         if self.start.poses and len(self.start.poses) != len(robots):
             yield Problem(

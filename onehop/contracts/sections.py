@@ -2,11 +2,21 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
-from onehop.contracts.problems import Problem, positive
+from onehop.contracts.problems import Problem
+from onehop.contracts.ranges import Range
 
-Point = tuple[float, float]
+Coordinate = Annotated[float, Range(-1e7, 1e7)]
+"""x or y in the map frame [m]; UTM northings reach 1e7."""
+
+Point = tuple[Coordinate, Coordinate]
+
+RobotId = Annotated[int, Range(1, 2**31 - 1)]
+Seconds = Annotated[float, Range(0.0, 1e6)]
+"""A time of the mission [s]: up to eleven days."""
+
+MOST_ROBOTS = 1000
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,18 +28,19 @@ class MapSection:
     """
 
     file: str = ""
-    cell: float = 1.0
-    width: float = 0.0
-    height: float = 0.0
+    cell: Annotated[float, Range(1e-3, 1e3)] = 1.0
+    width: Annotated[float, Range(0.0, 1e5)] = 0.0
+    height: Annotated[float, Range(0.0, 1e5)] = 0.0
     obstacles: tuple[tuple[Point, ...], ...] = ()
 
     def problems(self) -> Iterator[Problem]:
-        yield from positive(self, "cell")
         if self.file:
             if self.obstacles or self.width or self.height:
                 yield Problem("file", "a map file and a polygon map at once", "keep one of them")
             return
-        yield from positive(self, "width", "height")
+        for key in ("width", "height"):
+            if not getattr(self, key) > 0:
+                yield Problem(key, "a map without extent", "its size in metres, or a map file")
         for number, polygon in enumerate(self.obstacles):
             if len(polygon) < 3:
                 yield Problem(
@@ -51,26 +62,19 @@ class StartSection:
     x, y: centre of the disc [m]. radius: its radius [m]; 0 = as small as the team allows.
     """
 
-    x: float = 0.0
-    y: float = 0.0
-    radius: float = 0.0
-    poses: tuple[tuple[float, float, float], ...] = ()
-
-    def problems(self) -> Iterator[Problem]:
-        if self.radius < 0:
-            yield Problem("radius", f"{self.radius} is negative", "0 (automatic) or more metres")
+    x: Coordinate = 0.0
+    y: Coordinate = 0.0
+    radius: Annotated[float, Range(0.0, 1e5)] = 0.0
+    poses: tuple[tuple[Coordinate, Coordinate, Annotated[float, Range(-360.0, 360.0)]], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class GoalSection:
     """Where the team goes [m]; the leader has arrived within `tolerance` of it [m]."""
 
-    x: float
-    y: float
-    tolerance: float = 0.5
-
-    def problems(self) -> Iterator[Problem]:
-        yield from positive(self, "tolerance")
+    x: Coordinate
+    y: Coordinate
+    tolerance: Annotated[float, Range(1e-3, 1e3)] = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,20 +85,13 @@ class RobotSection:
     max_turn_rate [rad/s]. laser_*: 2-D range finder ahead (thesis 3.2, 3.4).
     """
 
-    radius: float = 0.2
-    leader_speed: float = 1.0
-    max_speed: float = 3.0
-    max_turn_rate: float = 3.0
-    laser_range: float = 10.0
-    laser_beams: int = 181
-    laser_fov_deg: float = 180.0
-
-    def problems(self) -> Iterator[Problem]:
-        yield from positive(self, "radius", "leader_speed", "max_speed", "max_turn_rate", "laser_range")
-        if self.laser_beams < 2:
-            yield Problem("laser_beams", f"{self.laser_beams} beams", "at least 2")
-        if not 0 < self.laser_fov_deg <= 270:
-            yield Problem("laser_fov_deg", f"{self.laser_fov_deg} degrees", "0 < fov <= 270")
+    radius: Annotated[float, Range(0.01, 10.0)] = 0.2
+    leader_speed: Annotated[float, Range(0.01, 100.0)] = 1.0
+    max_speed: Annotated[float, Range(0.01, 100.0)] = 3.0
+    max_turn_rate: Annotated[float, Range(0.01, 100.0)] = 3.0
+    laser_range: Annotated[float, Range(0.1, 1e3)] = 10.0
+    laser_beams: Annotated[int, Range(2, 10_000)] = 181
+    laser_fov_deg: Annotated[float, Range(1.0, 270.0)] = 180.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,16 +105,15 @@ class GainsSection:
     that is blind, so the default is to turn on the spot first.
     """
 
-    k_alpha: float = 8.0
-    k_beta: float = -1.5
-    k_rho_min: float = 1.0
-    k_rho_max: float = 3.0
+    k_alpha: Annotated[float, Range(1e-3, 1e3)] = 8.0
+    k_beta: Annotated[float, Range(-1e3, 1e3)] = -1.5
+    k_rho_min: Annotated[float, Range(1e-3, 1e3)] = 1.0
+    k_rho_max: Annotated[float, Range(1e-3, 1e3)] = 3.0
     policy: Literal["throughput", "constant", "smooth"] = "throughput"
     threshold: Literal["thesis", "ideal"] = "thesis"
     reverse: bool = False
 
     def problems(self) -> Iterator[Problem]:
-        yield from positive(self, "k_rho_min")
         if not self.k_beta < 0:
             yield Problem("k_beta", f"{self.k_beta} is not negative", "k_beta < 0 (eq. 3.14)")
         if self.k_rho_max < self.k_rho_min:
@@ -147,31 +143,25 @@ class TeamSection:
     leader never waits (thesis 3.8.2).
     """
 
-    size: int = 6
-    ids: tuple[int, ...] = ()
-    spacing: float = 4.0
-    next_period: float = 2.0
-    lost_after: int = 2
-    leader_timeout: float = 5.0
-    setup_timeout: float = 40.0
-    next_msdu_bytes: int = 800
+    size: Annotated[int, Range(1, MOST_ROBOTS)] = 6
+    ids: tuple[RobotId, ...] = ()
+    spacing: Annotated[float, Range(0.01, 1e3)] = 4.0
+    next_period: Annotated[float, Range(0.01, 3600.0)] = 2.0
+    lost_after: Annotated[int, Range(1, 1000)] = 2
+    leader_timeout: Annotated[float, Range(0.01, 1e5)] = 5.0
+    setup_timeout: Annotated[float, Range(0.01, 1e5)] = 40.0
+    next_msdu_bytes: Annotated[int, Range(1, 2304)] = 800
     profile: Literal["team", "thesis"] = "team"
     orphan: Literal["stop", "solo"] = "stop"
-    successor_timeout: float = 1.0
-    narrow_spacing: float = 1.5
-    straggler_speed: float = 1.0
+    successor_timeout: Annotated[float, Range(0.01, 1e5)] = 1.0
+    narrow_spacing: Annotated[float, Range(0.01, 1e3)] = 1.5
+    straggler_speed: Annotated[float, Range(1e-3, 1.0)] = 1.0
 
     @property
     def robots(self) -> tuple[int, ...]:
         return tuple(sorted(self.ids)) if self.ids else tuple(range(1, self.size + 1))
 
     def problems(self) -> Iterator[Problem]:
-        yield from positive(
-            self, "size", "spacing", "next_period", "lost_after", "leader_timeout", "setup_timeout",
-            "successor_timeout", "narrow_spacing", "straggler_speed",
-        )  # fmt: skip
-        if self.straggler_speed > 1:
-            yield Problem("straggler_speed", f"{self.straggler_speed} is above 1", "a share, 0 < s <= 1")
         if self.leader_timeout < self.next_period:
             yield Problem(
                 "leader_timeout",
@@ -181,10 +171,8 @@ class TeamSection:
         duplicates = sorted({i for i in self.ids if self.ids.count(i) > 1})
         if duplicates:
             yield Problem("ids", f"robot {duplicates[0]} stands twice", "every id once")
-        if any(i < 1 for i in self.ids):
-            yield Problem("ids", f"id {min(self.ids)}", "ids are 1 or more")
-        if not 1 <= self.next_msdu_bytes <= 2304:
-            yield Problem("next_msdu_bytes", f"{self.next_msdu_bytes} B", "1..2304 (802.11 MSDU limit)")
+        if len(self.ids) > MOST_ROBOTS:
+            yield Problem("ids", f"{len(self.ids)} robots", f"at most {MOST_ROBOTS}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,14 +185,11 @@ class PlannerSection:
     """
 
     kind: Literal["escape", "modified", "original"] = "escape"
-    samples: int = 200
-    inflation: float = 0.5
-    classify_range: float = 3.0
-    memory: int = 1024
-    patience: float = 50.0
-
-    def problems(self) -> Iterator[Problem]:
-        yield from positive(self, "samples", "inflation", "classify_range", "memory", "patience")
+    samples: Annotated[int, Range(1, 5000)] = 200
+    inflation: Annotated[float, Range(0.01, 100.0)] = 0.5
+    classify_range: Annotated[float, Range(0.01, 1e3)] = 3.0
+    memory: Annotated[int, Range(1, 100_000)] = 1024
+    patience: Annotated[float, Range(0.1, 1e6)] = 50.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,16 +201,13 @@ class ClockSection:
     """
 
     mode: Literal["lockstep"] = "lockstep"
-    period_ms: int = 50
-    limit_s: float = 900.0
-    silence_s: float = 10.0
+    period_ms: Annotated[int, Range(1, 1000)] = 50
+    limit_s: Annotated[float, Range(0.001, 1e6)] = 900.0
+    silence_s: Annotated[float, Range(0.1, 3600.0)] = 10.0
 
     @property
     def period_ns(self) -> int:
         return self.period_ms * 1_000_000
-
-    def problems(self) -> Iterator[Problem]:
-        yield from positive(self, "period_ms", "limit_s", "silence_s")
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,21 +220,17 @@ class FaultSection:
     """
 
     kind: Literal["kill", "restart", "hold", "cut", "jam", "heal"]
-    at_s: float
-    robots: tuple[int, ...] = ()
-    others: tuple[int, ...] = ()
-    duration_s: float = 0.0
-    x: float = 0.0
-    y: float = 0.0
-    radius: float = 0.0
-    noise_dbm: float = -60.0
+    at_s: Seconds
+    robots: tuple[RobotId, ...] = ()
+    others: tuple[RobotId, ...] = ()
+    duration_s: Seconds = 0.0
+    x: Coordinate = 0.0
+    y: Coordinate = 0.0
+    radius: Annotated[float, Range(0.0, 1e6)] = 0.0
+    noise_dbm: Annotated[float, Range(-200.0, 100.0)] = -60.0
 
     def problems(self) -> Iterator[Problem]:
-        if self.at_s < 0:
-            yield Problem("at_s", f"{self.at_s} is negative", "seconds since the start")
-        if self.duration_s < 0:
-            yield Problem("duration_s", f"{self.duration_s} is negative", "0 or more seconds")
         if self.kind in ("kill", "restart", "hold", "cut") and not self.robots:
             yield Problem("robots", f"{self.kind} of nobody", "name at least one robot")
-        if self.kind == "jam":
-            yield from positive(self, "radius")
+        if self.kind == "jam" and not self.radius > 0:
+            yield Problem("radius", "a jam without extent", "radius of the jammed disc [m]")

@@ -16,6 +16,9 @@ def apply_change(table: dict[str, Any], setting: str) -> None:
         value = tomllib.loads(f"value = {text}")["value"]
     except tomllib.TOMLDecodeError:
         value = text.strip()
+    except (ValueError, RecursionError) as error:
+        problem = f"not a value that can be read ({error})"
+        raise ScenarioError(f"--set {setting:.80}", problem, "e.g. team.size=4") from None
     target: Any = table
     for step in path[:-1]:
         target = _child(target, step, setting)

@@ -4,6 +4,7 @@ Every wrong key, type, value or unreachable file ends in one ScenarioError that 
 says what would be right. The world's own checks (a start inside an obstacle) come when it is built.
 """
 
+import math
 import tomllib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -69,6 +70,8 @@ def point(text: str | None, option: str) -> tuple[float, float] | None:
         return None
     try:
         x, y = (float(part) for part in text.split(","))
+        if not (abs(x) < math.inf and abs(y) < math.inf):
+            raise ValueError
     except ValueError:
         raise ScenarioError(f"{option} {text}", "not a point", "x,y in metres, e.g. 10,12.5") from None
     return x, y
@@ -105,13 +108,15 @@ def load_map_mission(
 
 def _read_toml(path: Path) -> dict[str, Any]:
     try:
-        return tomllib.loads(path.read_bytes().decode())
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
     except OSError as error:
         raise ScenarioError(
             str(path), error.strerror or "cannot be read", "name a scenario file that exists"
         ) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except ValueError as error:  # TOML, UTF-8, or an integer of thousands of digits
         raise ScenarioError(str(path), f"not TOML ({error})", "see scenarios/map1.toml") from None
+    except RecursionError:
+        raise ScenarioError(str(path), "nested too deeply", "see scenarios/map1.toml") from None
 
 
 def _read_map_files(name: str, directory: Path, origin: str) -> dict[str, bytes]:

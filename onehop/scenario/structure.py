@@ -23,7 +23,10 @@ _KIND_NAMES = {bool: "true or false", int: "a whole number", float: "a number", 
 
 def _scalar(value: Any, kind: Any) -> Any:
     if kind is float and type(value) is int:
-        return float(value)
+        try:
+            return float(value)
+        except OverflowError:
+            raise _MismatchError("an integer beyond all numbers", "give a finite number") from None
     if type(value) is not kind:
         raise _MismatchError(f"{value!r:.60} is not {_KIND_NAMES[kind]}", f"give {_KIND_NAMES[kind]}")
     return value
