@@ -171,7 +171,7 @@ class Robot:
         self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
         self._settling.watch(pose, target, state.phase is MissionPhase.DRIVING)
         self._error = self._settling.error
-        self._in_position = self._is_in_position(protocol)
+        self._in_position = self._is_in_position()
         if self._is_at_rest(protocol):
             return STANDSTILL
         if state.mode is Mode.GIVING_WAY:
@@ -190,12 +190,13 @@ class Robot:
             return pose
         return Pose(pose.x, pose.y, self._leader.trail.course(pose))
 
-    def _is_in_position(self, protocol: TeamProtocol) -> bool:
-        """Whether the robot is in its slot, or, in profile `team`, as near to it as it can get.
+    def _is_in_position(self) -> bool:
+        """Whether the robot is in its slot, or as near to it as it can get.
 
-        Differs: a slot may lie inside a wall; the thesis would wait for it until the setup timeout.
+        Differs: a slot may lie inside a wall or beside one, where no robot can stand; the thesis would
+        wait for it until the setup timeout, and lose the robot.
         """
-        near = protocol.rules.trail and self._error < self._briefing.team.spacing / 2.0
+        near = self._error < self._briefing.team.spacing / 2.0
         return self._settling.in_slot or (near and self._settling.settled)
 
     def _is_at_rest(self, protocol: TeamProtocol) -> bool:

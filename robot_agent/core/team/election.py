@@ -7,13 +7,14 @@ profiles do otherwise is in rules.py.
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import BROADCAST
 from onehop.contracts.sections import TeamSection
+from onehop.contracts.serial_numbers import following, newer
 from onehop.contracts.units import nanoseconds
 from robot_agent.core.team.join_probation import JoinProbation
 from robot_agent.core.team.modes import ModeEvent
 from robot_agent.core.team.outbox import Outbox
 from robot_agent.core.team.part import Handover, Joining, Leading
 from robot_agent.core.team.roster import Roster
-from robot_agent.core.team.rules import Rules, Silence
+from robot_agent.core.team.rules import Rules
 from robot_agent.core.team.state import TeamState
 from robot_agent.core.team.team_messages import CommandKind, Join
 
@@ -50,15 +51,32 @@ class Election:
             self._outbox.note("joined", robots=joined, epoch=merged.epoch)
             self.change_roster(now_ns, part, merged, ())
 
+    def catch_up(self, now_ns: int, part: Leading, epoch: int) -> bool:
+        """A member knows of a newer epoch: go on with the same roster above it; whether that was so."""
+        if not newer(epoch, self._state.roster.epoch):
+            return False
+        self.change_roster(now_ns, part, self._state.roster.merged(epoch, ()), ())
+        return True
+
     def change_roster(self, now_ns: int, part: Leading, roster: Roster, lost: tuple[int, ...]) -> None:
-        """A leader puts a new roster in force, and gives way if that has another leader."""
+        """A leader puts a new roster in force, and gives way if that has another leader.
+
+        One that nobody ever answered is no leader but an orphan (thesis 3.8.1).
+        """
         state = self._state
         self._probation.give_up(lost)
         self._outbox.note("roster", epoch=roster.epoch, members=roster.members, lost=lost)
-        if roster.leader == self._state.robot:
+        if len(roster.members) == 1 and self._rules.orphan_stops and not part.ledger.heard:
+            state.become_waiting(now_ns, FOREVER_NS, ModeEvent.ORPHANED)
+        elif roster.leader == state.robot:
             state.keep_leading(part, roster)
             part.schedule.urgent = True
-            return
+        else:
+            self._give_way(now_ns, part, roster, lost)
+
+    def _give_way(self, now_ns: int, part: Leading, roster: Roster, lost: tuple[int, ...]) -> None:
+        """Hand the team over to the leader of this roster."""
+        state = self._state
         state.adopt(roster)
         command = state.command(part, CommandKind.LOST_FOLLOWER, lost, ())
         patience_ns = HANDOVER_PERIODS * self._period_ns
@@ -66,23 +84,21 @@ class Election:
         state.become_waiting(now_ns, patience_ns, ModeEvent.GAVE_WAY, handover)
 
     def on_silence(self, now_ns: int, pose: Pose) -> None:
-        """Lost_Leader: the leader, or the one elected in its place, was silent for too long.
+        """Lost_Leader: the leader, or one elected in its place, was silent for too long (thesis 3.3.5).
 
+        Each is given up in turn; who is left alone goes on so, or stops (thesis 3.8.1, `orphan`).
         In profile `team` the robot also calls: a leader that still lives takes it in again, and who
         missed the same leader elects at the same time.
         """
         state, silent = self._state, self._state.roster.leader
-        silence = self._rules.on_silence(state.mode)
+        rest = Roster(following(state.roster.epoch), (state.robot,))
         if not isinstance(state.part, Joining):
             self._outbox.note("lost_leader", leader=silent)
             self._probation.give_up((silent,))
-        if silence is Silence.STOP:
+            rest = state.roster.without((silent,))
+        if len(rest.members) == 1 and self._rules.orphan_stops:
             state.become_waiting(now_ns, FOREVER_NS, ModeEvent.ORPHANED)
             return
-        if silence is Silence.GO_ALONE:
-            state.become_leader(now_ns, pose, Roster(state.roster.epoch + 1, (self._state.robot,)))
-            return
-        rest = state.roster.without((silent,))
         if rest.leader == self._state.robot:
             state.become_leader(now_ns, pose, rest)
             return

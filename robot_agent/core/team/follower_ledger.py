@@ -32,12 +32,13 @@ class CommandSchedule:
 class FollowerLedger:
     """Answers of the followers of one leader, from its election to its end.
 
-    reports: the last acknowledgement of each, by robot.
+    reports: the last acknowledgement of each, by robot. heard: somebody has answered ever.
     """
 
     def __init__(self, followers: tuple[int, ...]) -> None:
         self.followers: tuple[int, ...] = ()
         self.reports: dict[int, Ack] = {}
+        self.heard = False
         self._answered: dict[int, bool] = {}
         self._misses: dict[int, int] = {}
         self.adopt(followers)
@@ -56,7 +57,7 @@ class FollowerLedger:
         """
         if source not in self._answered or ack.sequence > sequence:
             return False
-        self._answered[source] = True
+        self._answered[source] = self.heard = True
         known = self.reports.get(source)
         if known is None or ack.sequence >= known.sequence:
             self.reports[source] = ack

@@ -66,7 +66,7 @@ _ON_THE_WAY = {**_LED, ModeEvent.OBSTRUCTED: Mode.BORDER, ModeEvent.ARRIVED: Mod
 
 TABLE: dict[Mode, dict[ModeEvent, Mode]] = {
     Mode.SETUP: {**_LED, ModeEvent.FORMED: Mode.LEADING, ModeEvent.ARRIVED: Mode.STOPPED},
-    Mode.LEADING: {**_ANY, ModeEvent.ARRIVED: Mode.STOPPED},
+    Mode.LEADING: {**_ANY, ModeEvent.ARRIVED: Mode.STOPPED, ModeEvent.ORPHANED: Mode.STOPPED},
     Mode.ALONE: {**_ANY, ModeEvent.ARRIVED: Mode.STOPPED},
     Mode.FOLLOWING: _ON_THE_WAY,
     Mode.NARROW: _ON_THE_WAY,

@@ -144,7 +144,7 @@ class TeamProtocol:
         elif isinstance(message, Command):
             self._on_command(now_ns, pose, in_position, message, reception)
         elif isinstance(message, Ack):
-            self._on_ack(source, message)
+            self._on_ack(now_ns, source, message)
         elif not self.rules.beacons:
             self.counters["foreign"] += 1
         elif isinstance(message, Beacon):
@@ -185,10 +185,12 @@ class TeamProtocol:
         ack = Ack(state.roster.epoch, command.sequence, in_position, pose)
         self._outbox.send(reception.source, ack, ACK_MSDU_BYTES)
 
-    def _on_ack(self, source: int, ack: Ack) -> None:
+    def _on_ack(self, now_ns: int, source: int, ack: Ack) -> None:
         part = self.state.part
         if not isinstance(part, Leading) or not part.ledger.on_ack(source, ack, part.schedule.sequence):
             self.counters["stale"] += 1
+        elif self.rules.beacons:
+            self._election.catch_up(now_ns, part, ack.epoch)
 
     def _on_handover(self, now_ns: int, pose: Pose, source: int, command: Command) -> None:
         """Lost_Follower from a leader that gives way: the roster names somebody else."""
@@ -244,8 +246,8 @@ class TeamProtocol:
                 self.counters["stale"] += 1
         elif source not in state.roster.members:
             self._election.merge(now_ns, part, source, join.epoch, (source,))
-        elif join.epoch > state.roster.epoch:
-            self._election.change_roster(now_ns, part, state.roster.merged(join.epoch, ()), ())
+        elif self._election.catch_up(now_ns, part, join.epoch):
+            return
         elif now_ns - part.schedule.commanded_ns >= self.rules.successor_patience_ns // 2:
             part.schedule.urgent = True
 

@@ -7,9 +7,9 @@ from enum import Enum
 from typing import Protocol
 
 from onehop.contracts.sections import TeamSection
-from onehop.contracts.team import Mode
+from onehop.contracts.serial_numbers import newer
 from onehop.contracts.units import nanoseconds
-from robot_agent.core.team.part import Following, Leading, Part
+from robot_agent.core.team.part import Following, Joining, Leading, Part, Waiting
 from robot_agent.core.team.roster import Roster
 
 
@@ -21,27 +21,21 @@ class Meeting(Enum):
     ASK = "ask it to take this robot in"
 
 
-class Silence(Enum):
-    """What to do when the leader was silent for too long."""
-
-    ELECT = "strike it from the roster and obey the median of the rest"
-    GO_ALONE = "lead a team of itself"
-    STOP = "stop"
-
-
 class Rules(Protocol):
     """One profile.
 
     beacons: leaders are heard by everyone in range, and robots ask to join. trail: a Next tells the
     leader's way; followers form up on its course, settle beside slots that cannot be had, and make
     room. repeats_handover: until the new leader is heard. calls: a robot that lost its leader says so.
-    successor_patience_ns: silence of an elected leader until it is given up.
+    successor_patience_ns: silence of an elected leader until it is given up too. orphan_stops: who hears
+    nobody any more stops; otherwise it goes on alone.
     """
 
     beacons: bool
     trail: bool
     repeats_handover: bool
     calls: bool
+    orphan_stops: bool
     successor_patience_ns: int
 
     def obeys(self, part: Part, mine: Roster, source: int, roster: Roster, overdue: bool) -> bool:
@@ -59,10 +53,6 @@ class Rules(Protocol):
         """What to do about the leader `source`, which is not obeyed."""
         ...
 
-    def on_silence(self, mode: Mode) -> Silence:
-        """What to do when the leader is given up."""
-        ...
-
     def lost_at_setup(self, missing: tuple[int, ...]) -> tuple[int, ...]:
         """Who of those that are not in position when setup times out is lost."""
         ...
@@ -75,7 +65,7 @@ class ThesisRules:
 
     def __init__(self, team: TeamSection) -> None:
         self.successor_patience_ns = nanoseconds(team.leader_timeout)
-        self._last_resort = Silence.STOP if team.orphan == "stop" else Silence.GO_ALONE
+        self.orphan_stops = team.orphan == "stop"
 
     def obeys(self, part: Part, mine: Roster, source: int, roster: Roster, overdue: bool) -> bool:  # noqa: ARG002
         """Nobody obeys a stranger while it hears its own leader, and a leader obeys nobody."""
@@ -91,11 +81,6 @@ class ThesisRules:
         """Teams do not merge."""
         return Meeting.IGNORE
 
-    def on_silence(self, mode: Mode) -> Silence:
-        """Who hears neither its leader nor the one elected in its place hears nobody (3.8.1)."""
-        gave_up_before = mode in (Mode.LOST_LEADER, Mode.JOINING)
-        return self._last_resort if gave_up_before else Silence.ELECT
-
     def lost_at_setup(self, missing: tuple[int, ...]) -> tuple[int, ...]:
         """All of them (3.3.3)."""
         return missing
@@ -110,18 +95,19 @@ class TeamRules:
     """
 
     beacons = trail = repeats_handover = calls = True
+    orphan_stops = False
 
     def __init__(self, team: TeamSection) -> None:
         self.successor_patience_ns = nanoseconds(team.successor_timeout)
 
     def obeys(self, part: Part, mine: Roster, source: int, roster: Roster, overdue: bool) -> bool:  # noqa: ARG002
-        """The better roster; without a leader that is heard, any that is not older."""
-        if roster == mine:
+        """The better roster; who waits obeys any that is not older, who joins any that lists it."""
+        if roster == mine or isinstance(part, Joining):
             return True
         if isinstance(part, Following) and mine.leader not in roster.members and not overdue:
             return False
-        leaderless = not isinstance(part, Following | Leading)
-        return roster.beats(mine) or (leaderless and roster.epoch >= mine.epoch)
+        waits = isinstance(part, Waiting) and not newer(mine.epoch, roster.epoch)
+        return waits or roster.beats(mine)
 
     def accepts_handover(self, mine: Roster, source: int, roster: Roster) -> bool:  # noqa: ARG002
         """From anyone, if the roster is better."""
@@ -132,10 +118,6 @@ class TeamRules:
         if isinstance(part, Leading):
             return Meeting.IGNORE if source in mine.members else Meeting.MERGE
         return Meeting.IGNORE if isinstance(part, Following) else Meeting.ASK
-
-    def on_silence(self, mode: Mode) -> Silence:
-        """Each in turn is given up; at the end the robot is alone."""
-        return Silence.GO_ALONE if mode is Mode.JOINING else Silence.ELECT
 
     def lost_at_setup(self, missing: tuple[int, ...]) -> tuple[int, ...]:  # noqa: ARG002
         """Nobody: one that answers and is still on its way can be led.

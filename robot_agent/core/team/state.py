@@ -6,6 +6,7 @@ Part and mode change together, so a mode that its part cannot show does not exis
 
 from onehop.contracts.briefings import Briefing
 from onehop.contracts.geometry import Pose
+from onehop.contracts.serial_numbers import newest
 from onehop.contracts.team import Mode
 from onehop.contracts.units import nanoseconds
 from robot_agent.core.team.events import BecameFollower, BecameLeader, TeamEvent
@@ -69,7 +70,7 @@ class TeamState:
 
     def adopt(self, roster: Roster) -> None:
         """Put a roster in force; the epoch of one robot never goes back."""
-        self.roster = Roster(max(self.roster.epoch, roster.epoch), roster.members)
+        self.roster = Roster(newest(self.roster.epoch, roster.epoch), roster.members)
 
     def become_leader(self, now_ns: int, pose: Pose, roster: Roster) -> None:
         """Lead this roster, which names this robot, on the way to the goal."""

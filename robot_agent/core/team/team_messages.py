@@ -15,12 +15,13 @@ import msgpack
 
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
+from onehop.contracts.serial_numbers import LIMIT
 from robot_agent.core.team.roster import Roster
 
 SCHEMA = 2
 """Version of the team's messages; any other is refused."""
 
-MAX_EPOCH = 2**31
+MAX_ID = 2**31
 MAX_MEMBERS = 1024
 MAX_TRAIL = 64
 MAX_COORDINATE = 1e7
@@ -191,7 +192,7 @@ def _decode_join(fields: Fields) -> Join:
 
 
 def _whole(value: object) -> int:
-    if type(value) is not int or not 0 <= value < MAX_EPOCH:
+    if type(value) is not int or not 0 <= value < LIMIT:
         raise DecodeError("a count is not a whole number in range")
     return value
 
@@ -216,7 +217,7 @@ def _ids(value: object) -> tuple[int, ...]:
         raise DecodeError("ids are not a list")
     previous = 0
     for robot in value:
-        if type(robot) is not int or not previous < robot < MAX_EPOCH:
+        if type(robot) is not int or not previous < robot < MAX_ID:
             raise DecodeError("ids are not whole numbers in rising order")
         previous = robot
     return tuple(value)

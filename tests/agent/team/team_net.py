@@ -16,6 +16,7 @@ from onehop.contracts.geometry import Pose, Twist, wrap_angle
 from onehop.contracts.messages import BROADCAST, Action, Note, Percept, Reception
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import ClockSection, GoalSection, MapSection, TeamSection
+from onehop.contracts.serial_numbers import newer
 from onehop.contracts.team import Mode, Status
 from robot_agent.core.planning import Guidance, Pathfinder, PlannerStatus
 from robot_agent.core.robot import Robot
@@ -233,7 +234,7 @@ class TeamNet:
             status = member.status
             if status is None:
                 continue
-            assert len(member.epochs) < 2 or member.epochs[-1] >= member.epochs[-2], f"epoch of {i}"
+            assert len(member.epochs) < 2 or not newer(*member.epochs[-2:]), f"epoch of {i}"
             if status.mode is Mode.JOINING:
                 assert status.leader != i
                 continue

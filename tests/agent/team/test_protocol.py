@@ -111,8 +111,20 @@ def test_an_orphan_of_profile_thesis_stops_or_goes_alone(orphan, mode):
     """Thesis 3.8.1."""
     net = drive(thesis(orphan=orphan))
     net.cut((1,))
-    net.run(20.0)
+    net.run(5 * net.scenario.team.leader_timeout + 2 * NEXT_PERIOD)
     assert net.status(1).mode is mode
+
+
+@pytest.mark.parametrize("profile", ["team", "thesis"])
+@pytest.mark.parametrize("dead", [(3, 4), (3, 4, 2), (3, 2, 5)])
+def test_leaders_that_die_at_once_are_given_up_one_after_the_other(profile, dead):
+    """Thesis 3.3.5: leaders may fail more than once; the elected one may be dead as well."""
+    net = drive(TeamSection() if profile == "team" else thesis())
+    for robot in dead:
+        net.kill(robot)
+    net.run(len(dead) * (net.scenario.team.leader_timeout + 2 * NEXT_PERIOD) + BOUND)
+    assert net.agree(), net.describe()
+    assert len(net.leaders()) == 1
 
 
 def test_a_leader_that_was_cut_off_goes_on_alone():
