@@ -6,23 +6,26 @@ Each command's module is imported when it is called, so that `onehop --help` ans
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, NoReturn, cast
 
 import typer
 from typer import Argument, Option
-from typer._click.exceptions import ClickException, NoArgsIsHelpError
 
 from onehop.contracts.errors import OnehopError
 
 app = typer.Typer(
     name="onehop",
     help="Robot teams held together by radio: run, re-execute and explain missions.",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+UsageError = cast(type[typer.BadParameter], typer.BadParameter.__base__)
+"""What Typer raises for anything typed wrong. Typer names only this child of it in public; the parent is
+Click's own or that of Typer's copy of Click, depending on the version."""
 
 
 class Driver(StrEnum):
@@ -57,6 +60,13 @@ AsJson = Annotated[
 
 def _leave(status: int) -> NoReturn:
     raise typer.Exit(status)
+
+
+@app.callback(invoke_without_command=True)
+def _help(context: typer.Context) -> None:
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+        _leave(2)
 
 
 @app.command()
@@ -300,10 +310,7 @@ def main() -> NoReturn:
         status = 130
     except BrokenPipeError:
         status = 1
-    except NoArgsIsHelpError as error:
-        print(error.format_message())
-        status = 2
-    except ClickException as error:
+    except UsageError as error:
         print(f"onehop: {error.format_message()}; see onehop --help", file=sys.stderr)
         status = 2
     sys.exit(status)
