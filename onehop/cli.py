@@ -6,7 +6,7 @@ Each command's module is imported when it is called, so that `onehop --help` ans
 import sys
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, NoReturn, cast
+from typing import Annotated, NoReturn
 
 import typer
 from typer import Argument, Option
@@ -21,11 +21,6 @@ app = typer.Typer(
     rich_markup_mode=None,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-
-UsageError = cast(type[typer.BadParameter], typer.BadParameter.__base__)
-"""What Typer raises for anything typed wrong. Typer names only this child of it in public; the parent is
-Click's own or that of Typer's copy of Click, depending on the version."""
 
 
 class Driver(StrEnum):
@@ -310,7 +305,7 @@ def main() -> NoReturn:
         status = 130
     except BrokenPipeError:
         status = 1
-    except UsageError as error:
+    except typer.TyperException as error:
         print(f"onehop: {error.format_message()}; see onehop --help", file=sys.stderr)
         status = 2
     sys.exit(status)
