@@ -3,8 +3,11 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+LOWEST_PYTHON ?= python3.11
+LOWEST := .venv-lowest
+LOWEST_STAMP := $(LOWEST)/.installed
 
-.PHONY: setup demo test check fast slow live campaign bench compose-demo clean
+.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign bench compose-demo clean
 
 setup: $(STAMP)
 
@@ -16,7 +19,7 @@ $(STAMP): pyproject.toml constraints.txt
 demo: setup  ## a recorded mission of nine processes, its summary and its figure
 	$(BIN)/onehop run scenarios/map1.toml --out runs/demo
 
-test: check fast slow live  ## everything that CI runs, fast first
+test: check fast slow live  ## all checks and tests, fast first
 
 check: setup
 	$(BIN)/ruff format --check .
@@ -33,6 +36,21 @@ slow: setup
 live: setup
 	$(BIN)/pytest -q -m live
 
+lowest: $(LOWEST_STAMP)  ## the fast tests with the lowest Python and the lowest versions that are promised
+	NUMBA_CACHE_DIR=$(LOWEST)/compiled $(LOWEST)/bin/pytest -q -m 'not slow and not live'
+
+$(LOWEST_STAMP): pyproject.toml constraints-lowest.txt
+	$(LOWEST_PYTHON) -m venv --clear $(LOWEST)
+	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints-lowest.txt --editable '.[dev]'
+	touch $@
+
+lowest-constraints:  ## write constraints-lowest.txt anew after a bound in pyproject.toml has changed
+	$(LOWEST_PYTHON) -m venv --clear $(LOWEST)
+	$(LOWEST)/bin/python .ci/lowest.py pyproject.toml > $(LOWEST)/bounds.txt
+	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint $(LOWEST)/bounds.txt --editable '.[dev]'
+	$(LOWEST)/bin/python -m pip freeze --exclude-editable > constraints-lowest.txt
+	touch $(LOWEST_STAMP)
+
 campaign: setup  ## what takes minutes and stays out of CI
 	$(BIN)/pytest -q -m campaign
 	for seed in 1 2 3 4 5 6 7 8 9 10; do \
@@ -46,4 +64,4 @@ compose-demo: setup  ## the same mission as containers; makes a local base image
 	./docker/compose-demo.sh
 
 clean:
-	rm -rf $(VENV) runs build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis
+	rm -rf $(VENV) $(LOWEST) runs build dist .mypy_cache .ruff_cache .pytest_cache .hypothesis

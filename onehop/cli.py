@@ -10,14 +10,12 @@ from typing import Annotated, NoReturn
 
 import typer
 from typer import Argument, Option
-from typer._click.exceptions import ClickException, NoArgsIsHelpError
 
 from onehop.contracts.errors import OnehopError
 
 app = typer.Typer(
     name="onehop",
     help="Robot teams held together by radio: run, re-execute and explain missions.",
-    no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     rich_markup_mode=None,
@@ -57,6 +55,13 @@ AsJson = Annotated[
 
 def _leave(status: int) -> NoReturn:
     raise typer.Exit(status)
+
+
+@app.callback(invoke_without_command=True)
+def _help(context: typer.Context) -> None:
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+        _leave(2)
 
 
 @app.command()
@@ -300,10 +305,7 @@ def main() -> NoReturn:
         status = 130
     except BrokenPipeError:
         status = 1
-    except NoArgsIsHelpError as error:
-        print(error.format_message())
-        status = 2
-    except ClickException as error:
+    except typer.TyperException as error:
         print(f"onehop: {error.format_message()}; see onehop --help", file=sys.stderr)
         status = 2
     sys.exit(status)

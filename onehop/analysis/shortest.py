@@ -104,7 +104,7 @@ def _dijkstra(free: BoolArray, row: int, column: int, steps: npt.NDArray[np.int6
                 continue
             if k >= 4 and not _clear(free, r, c, nr, nc):
                 continue
-            length = reached + math.sqrt(steps[k, 0] ** 2 + steps[k, 1] ** 2)
+            length = reached + math.sqrt(steps[k, 0] * steps[k, 0] + steps[k, 1] * steps[k, 1])
             if length < cost[nr, nc]:
                 cost[nr, nc] = length
                 heapq.heappush(heap, (length, nr, nc))

@@ -54,6 +54,13 @@ def test_bad_input_is_one_line_on_stderr_and_status_2(arguments: tuple[str, ...]
     assert told.stderr.count("\n") == 1
 
 
+def test_without_a_command_the_help_comes_and_status_2() -> None:
+    told, asked = onehop(), onehop("--help")
+    assert (told.returncode, asked.returncode) == (2, 0)
+    assert told.stdout == asked.stdout
+    assert told.stderr == ""
+
+
 @pytest.mark.parametrize("command", ["run", "replay", "elect", "link", "saturate", "plan", "doctor"])
 def test_help_has_an_example(command: str) -> None:
     told = onehop(command, "--help")

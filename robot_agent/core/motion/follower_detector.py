@@ -115,7 +115,8 @@ class FollowerDetector:
             return middles
         radius, count = self._radius, len(scan)
         far = scan[middles].astype(np.float64)[:, None] + radius
-        most = math.asin(min(1.0, radius / float(far.min())))
+        sine = min(1.0, radius / float(far.min()))
+        most = elementary.atan2(sine, math.sqrt(1.0 - sine * sine))
         steps = np.arange(-int(most / self._spacing) - 1, int(most / self._spacing) + 2)
         off_middle = np.multiply(steps, self._spacing, dtype=np.float64)
         beside = far * elementary.sines(off_middle)

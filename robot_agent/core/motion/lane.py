@@ -143,7 +143,8 @@ class DrawAside:
         if choice is None:
             return turn_towards(math.copysign(0.4, bearing), self._gains, self._body)
         direction, free = choice
-        speed = min(HURRY, max(0.0, free) / REACTION) * max(0.0, elementary.cos(direction)) ** 2
+        ahead = max(0.0, elementary.cos(direction))
+        speed = min(HURRY, max(0.0, free) / REACTION) * (ahead * ahead)
         return Twist(speed, turn_towards(direction, self._gains, self._body).w)
 
 

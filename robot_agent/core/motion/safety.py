@@ -56,6 +56,7 @@ class SafetyFilter:
         reached = (ahead > 0.0) & (beside_squared < keep * keep)
         if not reached.any():
             return twist
-        free = ahead[reached] - np.sqrt(keep[reached] ** 2 - beside_squared[reached])
+        keep = keep[reached]
+        free = ahead[reached] - np.sqrt(keep * keep - beside_squared[reached])
         v = min(twist.v, max(0.0, float(free.min())) / self._period)
         return Twist(v, twist.w)

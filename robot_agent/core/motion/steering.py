@@ -14,6 +14,7 @@ import math
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts import elementary
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.beams import Beams
 from onehop.contracts.sections import RobotSection
@@ -43,6 +44,9 @@ SIGHT_TOLERANCE = 0.3
 BUNDLE = 3
 """Neighbouring beams taken as one."""
 
+TOO_NEAR = 2.0
+"""Stands for R / r >= 1: greater than any sine."""
+
 FloatArray = npt.NDArray[np.float64]
 
 
@@ -51,7 +55,8 @@ class Steering:
 
     An obstacle at range r keeps a disc of radius R from every direction nearer to it than asin(R / r),
     and stops it there after r - R. That is exact in the middle and cautious at the edges. Beams are
-    taken three at a time, the nearest of them, because this runs at every tick.
+    taken three at a time, the nearest of them, because this runs at every tick. Sines are compared
+    instead of angles: an arcsine has another last place on another processor.
     """
 
     def __init__(self, body: RobotSection, fan: Beams) -> None:
@@ -61,7 +66,9 @@ class Steering:
         self._angles: FloatArray = fan.angles[: self._beams].reshape(bundles, BUNDLE).mean(axis=1)
         half = math.radians(min(body.laser_fov_deg, 180.0)) / 2.0
         self.candidates: FloatArray = np.arange(-half, half + 1e-9, STEP)
-        self._apart: FloatArray = np.abs(self._angles[None, :] - self.candidates[:, None])
+        apart: FloatArray = np.abs(self._angles[None, :] - self.candidates[:, None])
+        self._apart = _as_sines(apart, elementary.sines(apart.ravel()).reshape(apart.shape))
+        self._cosines, self._sines = elementary.cosines(self._angles), elementary.sines(self._angles)
         self._ranges: FloatArray = np.full(bundles, LOOKAHEAD)
         self._near: Ranges = np.full(bundles, np.inf, np.float32)
         self._spacing = float(self._angles[1] - self._angles[0]) if bundles > 1 else math.pi
@@ -77,19 +84,21 @@ class Steering:
         self._shadows = [None, None]
 
     def _shadow(self, tight: bool) -> tuple[FloatArray, FloatArray]:
-        """For each bundle of beams the half width of what it blocks [rad], and after how far [m]."""
+        """For each bundle of beams the sine of half of what it blocks, and after how far [m]."""
         shadow = self._shadows[tight]
         if shadow is None:
             radius = self._radii[tight]
-            ratio = np.minimum(radius / self._ranges, 1.0)
-            widths = np.where(ratio < 1.0, np.arcsin(ratio), 0.5 * math.pi + TURN_AWAY)
-            shadow = self._shadows[tight] = widths, self._ranges - radius
+            ratio = radius / self._ranges
+            ratio[ratio >= 1.0] = TOO_NEAR
+            shadow = self._shadows[tight] = ratio, self._ranges - radius
         return shadow
 
     def free_distance(self, bearing: float, tight: bool = False) -> float:
         """How far the robot could drive along a bearing [m], at most LOOKAHEAD."""
-        widths, depths = self._shadow(tight)
-        in_way = np.abs(self._angles - bearing) < widths
+        ratios, depths = self._shadow(tight)
+        c, s = elementary.cos(bearing), elementary.sin(bearing)
+        sines = np.abs(self._sines * c - self._cosines * s)
+        in_way = _as_sines(np.abs(self._angles - bearing), sines) < ratios
         return float(depths.min(where=in_way, initial=LOOKAHEAD))
 
     def sees(self, bearing: float, distance: float) -> bool:
@@ -107,8 +116,8 @@ class Steering:
         """
         need = min(NEEDED, distance)
         for tight in (False, True):
-            widths, depths = self._shadow(tight)
-            free = np.where(self._apart < widths, depths, LOOKAHEAD).min(axis=1)
+            ratios, depths = self._shadow(tight)
+            free = np.where(self._apart < ratios, depths, LOOKAHEAD).min(axis=1)
             ok = free >= need
             if not ok.any():
                 continue
@@ -122,3 +131,12 @@ class Steering:
             self._chosen = float(self.candidates[best])
             return self._chosen, float(free[best])
         return None
+
+
+def _as_sines(apart: FloatArray, sines: FloatArray) -> FloatArray:
+    """Angles between directions and beams [rad] in an order that compares with R / r.
+
+    sines: theirs. Beyond a right angle only what is too near blocks, and beyond TURN_AWAY nothing does.
+    """
+    beyond = np.where(apart < 0.5 * math.pi + TURN_AWAY, 1.0, np.inf)
+    return np.where(apart < 0.5 * math.pi, sines, beyond)

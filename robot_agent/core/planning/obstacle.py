@@ -83,8 +83,9 @@ def fan_direction(view: View, obstacle: Obstacle, within: float) -> float:
 def _along(wall: FloatArray, heading: float) -> float:
     """Direction of the line through hits of a wall, the one of the two that is closer to the heading."""
     spread = wall - wall.mean(axis=0)
-    sxx, syy = float((spread[:, 0] ** 2).sum()), float((spread[:, 1] ** 2).sum())
-    direction = 0.5 * elementary.atan2(2.0 * float((spread[:, 0] * spread[:, 1]).sum()), sxx - syy)
+    x, y = spread[:, 0], spread[:, 1]
+    sxx, syy = float((x * x).sum()), float((y * y).sum())
+    direction = 0.5 * elementary.atan2(2.0 * float((x * y).sum()), sxx - syy)
     return direction if elementary.cos(direction - heading) >= 0.0 else direction + math.pi
 
 

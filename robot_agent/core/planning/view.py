@@ -55,7 +55,8 @@ class View:
         self.obstacles: FloatArray = np.concatenate((_outline(hits, grain), beside))
         self._shown_to = _shown_to(self.sight)
         have = squared_distances(self.origin[None], self.obstacles)[0]
-        self._kept = np.maximum(np.sqrt(have) - np.float32(0.01), np.float32(0.0)) ** 2
+        kept = np.maximum(np.sqrt(have) - np.float32(0.01), np.float32(0.0))
+        self._kept = kept * kept
 
     def polar(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Bearing [rad, relative to the heading, in (-pi, pi]] and distance [m] of (n, 2) points."""

@@ -52,6 +52,17 @@ def test_nowhere_to_go_is_none():
     assert steering.choose(0.0, 5.0, 0) is None
 
 
+@pytest.mark.parametrize("bearing", [-3.0, -1.0, 0.0, 0.3, 1.5, 2.2])
+def test_an_obstacle_blocks_what_is_nearer_than_the_arcsine_of_its_share(bearing):
+    steering = Steering(BODY, FAN)
+    angles, ranges = FAN.angles[1::3][:60], np.random.default_rng(1).uniform(0.2, 5.0, (200, 60))
+    for far in ranges.astype(np.float32):
+        steering.look(np.append(np.repeat(far, 3), np.float32(np.inf)))
+        half = np.where(far > 0.45, np.arcsin(np.minimum(0.45 / far, 1.0)), math.radians(90.0 + 12.0))
+        free = np.where(np.abs(angles - bearing) < half, far - 0.45, LOOKAHEAD).min()
+        assert steering.free_distance(bearing) == pytest.approx(min(free, LOOKAHEAD), abs=1e-6)
+
+
 def test_free_distance_is_never_longer_than_the_disc_can_go():
     steering = Steering(BODY, FAN)
     steering.look(block(-3, 3, 2.0))
