@@ -14,8 +14,8 @@ class DataMessage:
     """One message of one robot. Times in ns, -1 until they are known.
 
     copies: how many robots hold it (an acknowledgement that is lost leaves two). searching_since: start
-    of the discovery that it waits for; searches: how many there were. loss: the copy
-    that was given up last, and why.
+    of the discovery that it waits for; searches: how many there were. loss: of the copies that
+    were given up, the one that came farthest (the last one of those), and why.
     """
 
     number: int

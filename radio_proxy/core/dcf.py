@@ -243,7 +243,7 @@ class Dcf:
         data = timing.data(exchange.frame.msdu_bytes)
         heard = self._hears(exchange, receiver, timing.basic_rate_mbps, RTS_BYTES)
         if heard and self.medium.reserved_until(receiver.index, now) > now:
-            exchange.frame.cause = DeliveryStatus.RETRY_LIMIT
+            exchange.frame.cause = DeliveryStatus.RECEIVER_BUSY
             heard = False
         reservation = self._reserve(exchange, now, 3, timing.cts + data + timing.ack)
         if heard:
@@ -321,6 +321,7 @@ class Dcf:
     def _answer(self, exchange: Exchange, speaker: Station, now: int) -> bool:
         """Emit the next frame of an exchange a SIFS after the last; False when its speaker has left."""
         if speaker.gone:
+            exchange.frame.cause = DeliveryStatus.RECEIVER_GONE
             self.at(now + self.timing.answer_timeout, self._on_timeout, exchange)
             return False
         exchange.emission = self._begin(speaker, exchange.fade_db, now)

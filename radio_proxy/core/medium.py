@@ -112,7 +112,7 @@ class Medium:
     ) -> tuple[DeliveryStatus | None, float]:
         """What keeps a station from getting a frame (None: nothing), and its SINR [dB].
 
-        RETRY_LIMIT stands for a collision: without the others the frame would have been received.
+        A collision is what would have reached the threshold without the emissions that overlap it.
         """
         mean_db = emission.row[station]
         if mean_db <= SILENT_DB:
@@ -126,7 +126,7 @@ class Medium:
             sinr_db = self._mean_sinr_db(emission, station) + fade_db
         if sinr_db < self._threshold_db:
             collided = alone_db >= self._threshold_db
-            return (DeliveryStatus.RETRY_LIMIT if collided else DeliveryStatus.BELOW_THRESHOLD), sinr_db
+            return (DeliveryStatus.COLLISION if collided else DeliveryStatus.BELOW_THRESHOLD), sinr_db
         if sinr_db >= CERTAIN_SINR_DB:
             return None, sinr_db
         lost = self._draws.uniform() >= frame_success(rate_mbps, sinr_db, bits)

@@ -162,14 +162,19 @@ class Radio:
         for card in died:
             card.gone = True
             for data in card.router.abandon():
-                self.drop(data, DeliveryStatus.SENDER_GONE)
+                self._drop_of_gone(card.robot, data)
         for robot in left:
             for frame in self._dcf.remove(self._index[robot]):
                 if isinstance(frame.packet, DataPacket):
-                    self.drop(frame.packet.tried(frame.attempts), DeliveryStatus.SENDER_GONE)
+                    self._drop_of_gone(robot, frame.packet.tried(frame.attempts))
         for presence in truth.present:
             if before.get(presence.robot) != presence.incarnation:
                 self._cards[presence.robot] = Nic(self, presence, self._section, now)
+
+    def _drop_of_gone(self, robot: int, data: DataPacket) -> None:
+        """A robot left with a copy of a message."""
+        at_source = robot == data.message.source
+        self.drop(data, DeliveryStatus.SENDER_GONE if at_source else DeliveryStatus.RELAY_GONE)
 
     def _submit(self, robot: int, transmission: Transmission, now: int) -> None:
         self._numbers[robot] += 1
@@ -212,8 +217,13 @@ class Radio:
         self._release(message)
 
     def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
-        """One copy of a message is given up."""
-        data.message.loss = (data, status)
+        """One copy of a message is given up.
+
+        A hop whose ACKs were all lost leaves two copies; what came of the one beyond it is on record.
+        """
+        loss = data.message.loss
+        if loss is None or len(data.path) >= len(loss[0].path):
+            data.message.loss = (data, status)
         self._release(data.message)
 
     def _release(self, message: DataMessage) -> None:
@@ -305,8 +315,17 @@ class Radio:
         if isinstance(packet, DataPacket):
             self._note_link(packet, frame)
             packet = packet.tried(frame.attempts)
-        cause = frame.cause or DeliveryStatus.RETRY_LIMIT
-        self._cards[robot].router.on_undeliverable(packet, self._robots[frame.receiver], cause, now)
+        next_hop = self._robots[frame.receiver]
+        cause = self._cause(frame, packet, next_hop)
+        self._cards[robot].router.on_undeliverable(packet, next_hop, cause, now)
+
+    def _cause(self, frame: Frame, packet: object, next_hop: int) -> DeliveryStatus:
+        """Why a hop failed: what its last attempt met, unless the next hop has left."""
+        assert frame.cause is not None
+        if frame.cause is not DeliveryStatus.RECEIVER_GONE and next_hop in self._cards:
+            return frame.cause
+        is_relay = isinstance(packet, DataPacket) and next_hop != packet.message.destination
+        return DeliveryStatus.RELAY_GONE if is_relay else DeliveryStatus.RECEIVER_GONE
 
     def on_broadcast_done(self, sender: int, frame: Frame, emission: Emission, now: int) -> None:
         packet = frame.packet

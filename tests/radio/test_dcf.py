@@ -12,6 +12,7 @@ from tests.radio.stations import Cell
 
 STILL = RadioSection(shadowing_db=0.0, mac_header_bytes=28)
 BASIC = RadioSection(shadowing_db=0.0, mac_header_bytes=28, rts_threshold_bytes=2304)
+ONE_ATTEMPT = RadioSection(shadowing_db=0.0, retry_limit=1)
 HIDDEN = (Cut((1,), (3,)),)
 """Stations 0 and 2 do not hear each other; station 1, between them, hears both."""
 
@@ -140,9 +141,36 @@ def test_nobody_answers_inside_a_reservation() -> None:
     late = cell.send_at(1200, 3, 2)
     cell.run(8_000)
     assert late.attempts >= 2
-    assert late.cause is DeliveryStatus.RETRY_LIMIT
+    assert late.cause is DeliveryStatus.RECEIVER_BUSY
     cell.run(60_000)
     assert len(cell.arrived) == 2
+
+
+@pytest.mark.parametrize(
+    "gone_us", [100, 405, 500, 720, 2000], ids=["in RTS", "before CTS", "in CTS", "after CTS", "in data"]
+)
+def test_a_receiver_that_leaves_during_an_exchange_is_the_reason_of_its_failure(
+    gone_us: float,
+) -> None:
+    """RTS from 50 to 402 us, CTS from 412 to 716 us, data from 726 us on."""
+    cell = Cell([(0, 0), (0, 0)], ONE_ATTEMPT)
+    frame = cell.send_at(0, 0, 1)
+    cell.run(gone_us)
+    cell.dcf.remove(1)
+    cell.run(20_000)
+    assert cell.given_up == [frame]
+    assert frame.cause == "receiver gone"
+
+
+def test_a_receiver_that_leaves_before_its_acknowledgement_has_the_frame() -> None:
+    """The data ends at 7,590 us, the ACK begins 10 us later."""
+    cell = Cell([(0, 0), (0, 0)], ONE_ATTEMPT)
+    frame = cell.send_at(0, 0, 1)
+    cell.run(7_595)
+    cell.dcf.remove(1)
+    cell.run(20_000)
+    assert [arrived for _, _, arrived in cell.arrived] == cell.given_up == [frame]
+    assert (frame.received, frame.cause) == (True, "receiver gone")
 
 
 def test_a_frame_is_given_up_after_the_retry_limit() -> None:

@@ -284,8 +284,8 @@ def test_a_message_is_salvaged_fifteen_times_at_most() -> None:
     net = Net("mrsr", [1, 2], [(1, 2)])
     router(net, 2).cache.add((2, 4, 3), 0)
     worn = data(1, (1, 2), (1, 2, 3), salvaged=MAX_SALVAGE)
-    router(net, 2).on_undeliverable(worn.tried(7), 3, DeliveryStatus.RETRY_LIMIT, 0)
-    assert net.lost == [(worn.message, DeliveryStatus.RETRY_LIMIT)]
+    router(net, 2).on_undeliverable(worn.tried(7), 3, DeliveryStatus.BELOW_THRESHOLD, 0)
+    assert net.lost == [(worn.message, DeliveryStatus.BELOW_THRESHOLD)]
 
 
 def test_both_directions_of_a_route_are_learnt_from_data() -> None:

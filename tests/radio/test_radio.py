@@ -51,8 +51,8 @@ def test_broadcasts_of_hidden_robots_collide_for_good() -> None:
     beacon = (message(BROADCAST, 100),)
     verdicts = mission.run(4, {1: beacon, 3: beacon})
     assert sorted((v.source, v.status, v.attempts) for v in verdicts if v.receiver == 2) == [
-        (1, DeliveryStatus.RETRY_LIMIT, (1,)),
-        (3, DeliveryStatus.RETRY_LIMIT, (1,)),
+        (1, DeliveryStatus.COLLISION, (1,)),
+        (3, DeliveryStatus.COLLISION, (1,)),
     ]
 
 
@@ -61,7 +61,7 @@ def test_broadcasts_of_robots_that_hear_each_other_take_turns() -> None:
     mission = Mission(line(3, 5.0), STILL)
     beacon = (message(BROADCAST, 100),)
     rounds = [mission.run(2, {1: beacon, 3: beacon}) for _ in range(100)]
-    collided = sum(v.status is DeliveryStatus.RETRY_LIMIT for r in rounds for v in r if v.receiver == 2)
+    collided = sum(v.status is DeliveryStatus.COLLISION for r in rounds for v in r if v.receiver == 2)
     assert 0 < collided < 20
 
 
