@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from onehop.contracts.messages import DeliveryStatus, Verdict
 from radio_proxy.core.propagation import SILENT_DB
 
-SEARCHES = 2
+MAX_DISCOVERIES = 2
 """Discoveries that the origin makes for one message: at first, and once more when a hop failed."""
 
 
@@ -13,7 +13,7 @@ SEARCHES = 2
 class DataMessage:
     """One message of one robot. Times in ns, -1 until they are known.
 
-    copies: how many robots hold it (an acknowledgement that is lost leaves two). searching_since: start
+    copies: how many robots hold it (an acknowledgement that is lost leaves two). discovering_since: start
     of the discovery that it waits for; searches: how many there were. loss: of the copies that
     were given up, the one that came farthest (the last one of those), and why.
     """
@@ -28,10 +28,10 @@ class DataMessage:
     settled: bool = False
     loss: "tuple[DataPacket, DeliveryStatus] | None" = None
     first_service: int = -1
-    discovery: int = 0
-    discovery_before_service: int = 0
-    searching_since: int = -1
-    searches: int = 0
+    discovery_time: int = 0
+    discovery_time_before_service: int = 0
+    discovering_since: int = -1
+    discoveries: int = 0
     sinr_db: float = SILENT_DB
     bit_error_rate: float = 0.5
 
@@ -42,19 +42,19 @@ class DataMessage:
         The wait behind other messages lies between discovery and service; it is taken out by moving the
         start, so that arrival - service_start is discovery and service alone (radio.md).
         """
-        return -1 if self.first_service < 0 else self.first_service - self.discovery_before_service
+        return -1 if self.first_service < 0 else self.first_service - self.discovery_time_before_service
 
-    def begin_search(self, now: int) -> None:
+    def begin_discovery(self, now: int) -> None:
         """Its origin has no route for it and looks for one."""
-        if self.searching_since < 0:
-            self.searching_since = now
-            self.searches += 1
+        if self.discovering_since < 0:
+            self.discovering_since = now
+            self.discoveries += 1
 
-    def end_search(self, now: int) -> None:
+    def end_discovery(self, now: int) -> None:
         """A route was found, or given up."""
-        if self.searching_since >= 0:
-            self.discovery += now - self.searching_since
-            self.searching_since = -1
+        if self.discovering_since >= 0:
+            self.discovery_time += now - self.discovering_since
+            self.discovering_since = -1
 
     def verdict(
         self, data: "DataPacket", receiver: int, status: DeliveryStatus, arrival: int
@@ -74,7 +74,7 @@ class DataMessage:
             offered_ns=self.offered,
             service_start_ns=start,
             arrival_ns=arrival,
-            discovery_ns=self.discovery,
+            discovery_ns=self.discovery_time,
             queueing_ns=waited,
             snr_db=self.sinr_db,
             bit_error_rate=self.bit_error_rate,

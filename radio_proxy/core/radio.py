@@ -282,7 +282,7 @@ class Radio:
         packet = frame.packet
         if isinstance(packet, DataPacket) and packet.message.first_service < 0:
             packet.message.first_service = now
-            packet.message.discovery_before_service = packet.message.discovery
+            packet.message.discovery_time_before_service = packet.message.discovery_time
 
     def on_received(self, receiver: int, sender: int, frame: Frame, now: int) -> None:
         packet = frame.packet
@@ -333,7 +333,7 @@ class Radio:
         rate_mbps = self._timing.basic_rate_mbps
         source = self._robots[sender]
         if not isinstance(packet, DataPacket):
-            self._cards[source].router.on_broadcast(packet, now)
+            self._cards[source].router.on_broadcast_sent(packet, now)
         for robot in sorted(self._cards):
             if robot == source:
                 continue

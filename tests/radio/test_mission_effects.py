@@ -100,9 +100,9 @@ def test_a_follower_cut_from_its_leader_is_led_over_a_relay_and_hurries(
     assert diary.statuses[-1][3].members == (1, 2, 3, 4, 5, 6)
 
 
-@pytest.mark.parametrize(("routing", "searching_s"), [("mrsr", 0.5), ("mrdv", 1.6)])
+@pytest.mark.parametrize(("routing", "discovery_s"), [("mrsr", 0.5), ("mrdv", 1.6)])
 def test_the_normal_discovery_leads_a_follower_when_nobody_passes_requests_on(
-    tmp_path: Path, routing: str, searching_s: float
+    tmp_path: Path, routing: str, discovery_s: float
 ) -> None:
     """Thesis 3.7.2: p_r is 0 at 1.5 m/s with gamma in the thousands; 1 is in reach of 2 alone."""
     settings = (
@@ -120,7 +120,7 @@ def test_the_normal_discovery_leads_a_follower_when_nobody_passes_requests_on(
         v for v in diary.nexts(30, 40) if v.receiver == 1 and v.status is DeliveryStatus.DELIVERED
     ]
     assert {v.path for v in arrived} == {(3, 2, 1)}
-    assert max(v.discovery_ns for v in arrived) > searching_s * SECOND
+    assert max(v.discovery_ns for v in arrived) > discovery_s * SECOND
     assert diary.statuses[-1][3].members == (1, 2, 3, 4, 5, 6)
 
 

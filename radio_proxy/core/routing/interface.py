@@ -7,7 +7,7 @@ from onehop.contracts.messages import DeliveryStatus
 from radio_proxy.core.data_message import DataPacket
 
 
-class Host(Protocol):
+class NicServices(Protocol):
     """What the card of one robot lets its routing protocol do."""
 
     robot: int
@@ -64,7 +64,7 @@ class Router(Protocol):
         """A control packet for another robot was heard; `sender` is the neighbour that sent it."""
         ...
 
-    def on_broadcast(self, packet: object, now: int) -> None:
+    def on_broadcast_sent(self, packet: object, now: int) -> None:
         """A broadcast of this robot has left its card."""
         ...
 

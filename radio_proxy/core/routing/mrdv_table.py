@@ -43,7 +43,7 @@ class RouteTable:
         if route is None:
             return None
         if route.valid and route.expires <= now:
-            self._kill(route, route.sequence, route.expires)
+            self._invalidate(route, route.sequence, route.expires)
         if not route.valid and route.expires <= now:
             del self._routes[destination]
             return None
@@ -54,7 +54,7 @@ class RouteTable:
         route = self.entry(destination, now)
         return route if route is not None and route.valid else None
 
-    def offer(
+    def update(
         self, destination: int, next_hop: int, hops: int, sequence: int, expires: int, now: int
     ) -> bool:
         """Take over a route with a sequence number if it is better (RFC 3561, 6.2 and 6.7).
@@ -80,7 +80,7 @@ class RouteTable:
         route.valid = True
         return True
 
-    def meet(self, neighbour: int, now: int) -> None:
+    def update_neighbour(self, neighbour: int, now: int) -> None:
         """A neighbour was heard: there is a way of one hop to it (RFC 3561, 6.2).
 
         Differs: a sequence number that was known stays in force, because forgetting it would let an
@@ -104,15 +104,17 @@ class RouteTable:
         """The neighbour is out of reach: every route through it dies, one number newer (6.11)."""
         broken = self._through(neighbour, now)
         for route in broken:
-            self._kill(route, following(route.sequence) if route.sequence_known else route.sequence, now)
+            self._invalidate(
+                route, following(route.sequence) if route.sequence_known else route.sequence, now
+            )
         return broken
 
-    def heed_error(self, neighbour: int, lost: tuple[tuple[int, int], ...], now: int) -> list[Route]:
+    def apply_rerr(self, neighbour: int, lost: tuple[tuple[int, int], ...], now: int) -> list[Route]:
         """Routes through a neighbour that says it cannot reach these (destination, sequence) (6.11)."""
         numbers = dict(lost)
         broken = [route for route in self._through(neighbour, now) if route.destination in numbers]
         for route in broken:
-            self._kill(route, numbers[route.destination], now)
+            self._invalidate(route, numbers[route.destination], now)
         return broken
 
     def destinations(self) -> tuple[int, ...]:
@@ -123,7 +125,7 @@ class RouteTable:
         found = (self.usable(destination, now) for destination in self.destinations())
         return [route for route in found if route is not None and route.next_hop == neighbour]
 
-    def _kill(self, route: Route, sequence: int, now: int) -> None:
+    def _invalidate(self, route: Route, sequence: int, now: int) -> None:
         route.valid = False
         route.sequence = sequence
         route.expires = now + DELETE_PERIOD_NS

@@ -35,7 +35,7 @@ class RouteCache:
                     return path
         return None
 
-    def forget_link(self, a: int, b: int) -> None:
+    def remove_link(self, a: int, b: int) -> None:
         """Drop every path that uses the broken link in either direction (RFC 4728, 8.3.5).
 
         The part of a path before the break stands under its own destination.
