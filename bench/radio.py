@@ -16,7 +16,7 @@ from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import DeliveryStatus, Presence, Transmission, TransmitRequest, Truth
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.radio import Radio
 from radio_proxy.core.saturation import Saturation, ring
 

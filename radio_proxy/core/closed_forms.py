@@ -9,7 +9,7 @@ import math
 
 from radio_proxy.core.airtime import Timing
 from radio_proxy.core.error_rates import frame_success
-from radio_proxy.core.propagation import LinkBudget
+from radio_proxy.core.link_budget import LinkBudget
 
 
 def bianchi_tau(stations: int, window: int, stages: int) -> tuple[float, float]:

@@ -1,8 +1,9 @@
-"""A data message on its way from robot to robot, and what is on record about it until it is settled."""
+"""A data message on its way from robot to robot, and what is on record about it until its verdict."""
 
 from dataclasses import dataclass
 
 from onehop.contracts.messages import DeliveryStatus, Verdict
+from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.propagation import SILENT_DB
 
 MAX_DISCOVERIES = 2
@@ -19,13 +20,13 @@ class DataMessage:
     """
 
     number: int
-    source: int
-    destination: int
+    source: RobotId
+    destination: RobotId
     payload: bytes
     msdu_bytes: int
     offered: int
     copies: int = 1
-    settled: bool = False
+    has_verdict: bool = False
     loss: "tuple[DataPacket, DeliveryStatus] | None" = None
     first_service: int = -1
     discovery_time: int = 0
@@ -44,6 +45,17 @@ class DataMessage:
         """
         return -1 if self.first_service < 0 else self.first_service - self.discovery_time_before_service
 
+    def begin_service(self, now: int) -> None:
+        """A link layer takes it up; the first to do so is its origin's."""
+        if self.first_service < 0:
+            self.first_service = now
+            self.discovery_time_before_service = self.discovery_time
+
+    def note_link(self, sinr_db: float, bit_error_rate: float) -> None:
+        """What the last attempt of its last hop met."""
+        self.sinr_db = sinr_db
+        self.bit_error_rate = bit_error_rate
+
     def begin_discovery(self, now: int) -> None:
         """Its origin has no route for it and looks for one."""
         if self.discovering_since < 0:
@@ -57,7 +69,7 @@ class DataMessage:
             self.discovering_since = -1
 
     def verdict(
-        self, data: "DataPacket", receiver: int, status: DeliveryStatus, arrival: int
+        self, data: "DataPacket", receiver: RobotId, status: DeliveryStatus, arrival: int
     ) -> Verdict:
         """Its record as the log keeps it; arrival is -1 when it was lost."""
         start = self.service_start
@@ -89,9 +101,9 @@ class DataPacket:
     """
 
     message: DataMessage
-    path: tuple[int, ...]
+    path: tuple[RobotId, ...]
     attempts: tuple[int, ...] = ()
-    route: tuple[int, ...] = ()
+    route: tuple[RobotId, ...] = ()
     salvaged: int = 0
 
     def tried(self, attempts: int) -> "DataPacket":
@@ -99,7 +111,7 @@ class DataPacket:
         tried = (*self.attempts, attempts)
         return DataPacket(self.message, self.path, tried, self.route, self.salvaged)
 
-    def moved(self, holder: int, attempts: int) -> "DataPacket":
+    def moved(self, holder: RobotId, attempts: int) -> "DataPacket":
         """The copy that the next robot holds."""
         path, tried = (*self.path, holder), (*self.attempts, attempts)
         return DataPacket(self.message, path, tried, self.route, self.salvaged)

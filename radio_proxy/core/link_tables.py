@@ -13,7 +13,7 @@ from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss, printed_throughput_bps
 from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized, frame_probability
 from radio_proxy.core.error_rates import bit_error_rate, thesis_ber
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.saturation import Saturation, pair, ring
 
 

@@ -44,7 +44,7 @@ class NetNic:
 
     def deliver(self, data: DataPacket, now: int) -> None:
         self._net.delivered.append((now, data))
-        data.message.settled = True
+        data.message.has_verdict = True
         self._net.release(data.message)
 
     def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
@@ -137,8 +137,8 @@ class Net:
         """A robot holds a message no more; the last one loses it unless it was delivered."""
         message.copies -= 1
         assert message.copies >= 0
-        if not message.settled and message.copies == 0:
-            message.settled = True
+        if not message.has_verdict and message.copies == 0:
+            message.has_verdict = True
             assert message.loss is not None
             self.lost.append((message, message.loss[1]))
 

@@ -10,7 +10,7 @@ from radio_proxy.core.closed_forms import (
     bianchi_tau,
     frame_probability,
 )
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from tests.radio.stations import fhss, threshold_probability
 
 STANDARD_1999 = dsss(RadioSection(cts_timeout_us=334.0))

@@ -4,9 +4,9 @@ import pytest
 
 from onehop.contracts.messages import Cut, DeliveryStatus
 from onehop.contracts.radio_section import RadioSection
+from radio_proxy.core.addresses import EVERYONE
 from radio_proxy.core.airtime import dsss
-from radio_proxy.core.contention import EVERYONE
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.saturation import Saturation, ring
 from tests.radio.stations import Cell
 

@@ -9,14 +9,16 @@ from hypothesis import strategies as st
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Cut, Jam, Presence
 from onehop.contracts.radio_section import RadioSection
-from radio_proxy.core.propagation import (
-    OWN_DB,
+from radio_proxy.core.link_budget import (
     REACH_DB,
-    SILENT_DB,
     THERMAL_NOISE_DBM,
-    Field,
     free_space_loss_db,
     link_budget,
+)
+from radio_proxy.core.propagation import (
+    OWN_DB,
+    SILENT_DB,
+    Propagation,
     walls_crossed,
 )
 
@@ -31,14 +33,14 @@ def present(*places: tuple[float, float]) -> tuple[Presence, ...]:
     )
 
 
-def field(
+def propagation_of(
     *places: tuple[float, float],
     section: RadioSection | None = None,
     walls: tuple[tuple[float, float, float, float], ...] = (),
     cuts: tuple[Cut, ...] = NO_CUTS,
     jams: tuple[Jam, ...] = NO_JAMS,
-) -> Field:
-    result = Field(link_budget(section or RadioSection()), tuple(range(1, len(places) + 1)), walls)
+) -> Propagation:
+    result = Propagation(link_budget(section or RadioSection()), tuple(range(1, len(places) + 1)), walls)
     result.update(present(*places), cuts, jams)
     return result
 
@@ -74,9 +76,11 @@ def test_a_scenario_overrides_its_preset() -> None:
 def test_every_wall_costs_its_loss() -> None:
     walls = ((5.0, -1.0, 5.0, 1.0), (6.0, -1.0, 6.0, 1.0), (7.0, 3.0, 7.0, 9.0))
     hard = RadioSection(wall_loss_db=7.0)
-    bare = field((0, 0), (10, 0)).row(0)[1]
-    assert field((0, 0), (10, 0), walls=walls).row(0)[1] == bare
-    assert field((0, 0), (10, 0), section=hard, walls=walls).row(0)[1] == pytest.approx(bare - 14.0)
+    bare = propagation_of((0, 0), (10, 0)).mean_snr_row(0)[1]
+    assert propagation_of((0, 0), (10, 0), walls=walls).mean_snr_row(0)[1] == bare
+    assert propagation_of((0, 0), (10, 0), section=hard, walls=walls).mean_snr_row(0)[1] == pytest.approx(
+        bare - 14.0
+    )
 
 
 coordinate = st.floats(-20, 20)
@@ -92,28 +96,28 @@ def test_walls_count_the_same_both_ways(ax: float, ay: float, bx: float, by: flo
 def test_cells_miss_nobody_in_reach(places: list[tuple[float, float]]) -> None:
     """The grid finds whatever comparing all pairs finds."""
     section = RadioSection(preset="physical", path_loss_exponent=4.0)
-    ground = field(*places, section=section)
+    propagation = propagation_of(*places, section=section)
     for a, (ax, ay) in enumerate(places):
         for b, (bx, by) in enumerate(places):
             if a != b:
-                mean = ground.budget.mean_snr_db(math.hypot(ax - bx, ay - by))
-                heard = ground.row(a)[b]
+                mean = propagation.budget.mean_snr_db(math.hypot(ax - bx, ay - by))
+                heard = propagation.mean_snr_row(a)[b]
                 assert heard == pytest.approx(mean) if mean > REACH_DB else heard in (SILENT_DB, mean)
 
 
 def test_a_cut_silences_both_directions_and_nobody_else() -> None:
-    ground = field((0, 0), (5, 0), (9, 0), cuts=(Cut((1,), (2,)),))
-    assert ground.row(0)[1] == ground.row(1)[0] == SILENT_DB
-    assert ground.row(0)[2] > SILENT_DB < ground.row(1)[2]
-    assert ground.row(0)[0] == OWN_DB
+    propagation = propagation_of((0, 0), (5, 0), (9, 0), cuts=(Cut((1,), (2,)),))
+    assert propagation.mean_snr_row(0)[1] == propagation.mean_snr_row(1)[0] == SILENT_DB
+    assert propagation.mean_snr_row(0)[2] > SILENT_DB < propagation.mean_snr_row(1)[2]
+    assert propagation.mean_snr_row(0)[0] == OWN_DB
 
 
 def test_a_jam_raises_the_noise_inside_its_disc_alone() -> None:
     jam = Jam(0.0, 0.0, 6.0, THESIS.noise_dbm + 10.0)
-    ground = field((0, 0), (5, 0), (9, 0), jams=(jam,))
-    ground.row(0)
+    propagation = propagation_of((0, 0), (5, 0), (9, 0), jams=(jam,))
+    propagation.mean_snr_row(0)
     rise = 10 * math.log10(11.0)
-    assert ground.noise_rise_db == pytest.approx([rise, rise, 0.0])
-    ground.update(present((0, 0), (5, 0), (9, 0)), (), ())
-    ground.row(0)
-    assert ground.noise_rise_db == [0.0, 0.0, 0.0]
+    assert propagation.noise_rise_db == pytest.approx([rise, rise, 0.0])
+    propagation.update(present((0, 0), (5, 0), (9, 0)), (), ())
+    propagation.mean_snr_row(0)
+    assert propagation.noise_rise_db == [0.0, 0.0, 0.0]

@@ -112,7 +112,7 @@ class RoutingMachine(RuleBasedStateMachine):
     def teardown(self) -> None:
         self.net.run(QUIET_NS)
         assert len(self.net.messages) == self.offered
-        assert all(message.settled for message in self.net.messages), "no message may hang"
+        assert all(message.has_verdict for message in self.net.messages), "no message may hang"
         before = len(self.net.sent)
         self.net.run(QUIET_NS)
         assert len(self.net.sent) == before, "an idle net is silent"
@@ -202,7 +202,7 @@ def test_everything_arrives_on_a_net_that_holds_together(
             net.submit(source, destination)
     net.run(QUIET_NS)
     assert not net.lost
-    assert all(message.settled for message in net.messages)
+    assert all(message.has_verdict for message in net.messages)
     assert all(message.discovery_time < 2_000 * MS for message in net.messages)
 
 

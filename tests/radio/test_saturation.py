@@ -5,7 +5,7 @@ import pytest
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import Timing, dsss
 from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.saturation import Saturation, pair, ring
 from tests.radio.stations import fhss, threshold_probability
 

@@ -1,6 +1,7 @@
 """No routing: every message goes to its destination in one hop or not at all."""
 
 from onehop.contracts.messages import DeliveryStatus
+from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.data_message import DataPacket
 from radio_proxy.core.routing.interface import NicServices
 
@@ -19,19 +20,21 @@ class DirectRouter:
     def abandon(self) -> list[DataPacket]:
         return []
 
-    def on_packet(self, packet: object, sender: int, now: int) -> None:  # noqa: ARG002
+    def on_packet(self, packet: object, sender: RobotId, now: int) -> None:  # noqa: ARG002
         assert isinstance(packet, DataPacket)
         self._nic.deliver(packet, now)
 
-    def on_overheard(self, packet: object, sender: int, now: int) -> None:
+    def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
         """Others' control packets say nothing that this protocol uses."""
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:
         """Nothing waits for an answer."""
 
-    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
+    def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:
         """Nothing is kept that could be refreshed."""
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:  # noqa: ARG002
+    def on_undeliverable(
+        self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
+    ) -> None:  # noqa: ARG002
         assert isinstance(packet, DataPacket)
         self._nic.drop(packet, cause)

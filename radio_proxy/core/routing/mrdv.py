@@ -12,7 +12,8 @@ of keeping silent so long (6.13). Requests are jittered before they are passed o
 from collections import deque
 from dataclasses import dataclass, field, replace
 
-from onehop.contracts.messages import BROADCAST, DeliveryStatus
+from onehop.contracts.messages import DeliveryStatus
+from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import MAX_DISCOVERIES, DataPacket
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
 from radio_proxy.core.routing.interface import NicServices
@@ -40,7 +41,7 @@ BUFFER_MESSAGES = 64
 class RouteDiscovery:
     """A discovery under way. network_wide: requests sent through the whole net so far."""
 
-    destination: int
+    destination: RobotId
     ttl: int
     network_wide: int = 0
     number: int = 0
@@ -58,12 +59,12 @@ class MrdvRouter:
         self._sequence = nic.incarnation << 16
         self._number = nic.incarnation << 16
         self._reboot_hold_until = now + DELETE_PERIOD_NS if nic.incarnation else now
-        self._discoveries: dict[int, RouteDiscovery] = {}
+        self._discoveries: dict[RobotId, RouteDiscovery] = {}
         self.buffered = 0
-        self._seen: dict[tuple[int, int], int] = {}
+        self._seen: dict[tuple[RobotId, int], int] = {}
         self._requests: deque[int] = deque()
         self._errors: deque[int] = deque()
-        self._blacklist: dict[int, int] = {}
+        self._blacklist: dict[RobotId, int] = {}
 
     def submit(self, data: DataPacket, now: int) -> None:
         if data.message.destination in self._discoveries or not self._forward_data(data, now):
@@ -74,7 +75,7 @@ class MrdvRouter:
         self._discoveries.clear()
         return waiting
 
-    def on_packet(self, packet: object, sender: int, now: int) -> None:
+    def on_packet(self, packet: object, sender: RobotId, now: int) -> None:
         if isinstance(packet, DataPacket):
             self._on_data(packet, sender, now)
         elif isinstance(packet, Rreq):
@@ -85,16 +86,18 @@ class MrdvRouter:
             self._report_broken(self.table.apply_rerr(sender, packet.lost, now), now)
         self._send_buffered(sender, now)
 
-    def on_overheard(self, packet: object, sender: int, now: int) -> None:
+    def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
         """Others' control packets say nothing that this protocol uses."""
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:
         """The patience with a request counts from its origination (RFC 3561, 6.3)."""
 
-    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:  # noqa: ARG002
+    def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:  # noqa: ARG002
         self.table.refresh(next_hop, now)
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:
+    def on_undeliverable(
+        self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
+    ) -> None:
         """Link-layer feedback: the neighbour is gone (RFC 3561, 6.10 and 6.11 case i)."""
         self._report_broken(self.table.break_link(next_hop, now), now)
         if isinstance(packet, Rrep):
@@ -108,7 +111,7 @@ class MrdvRouter:
 
     # DataPacket.
 
-    def _on_data(self, data: DataPacket, sender: int, now: int) -> None:
+    def _on_data(self, data: DataPacket, sender: RobotId, now: int) -> None:
         self.table.update_neighbour(sender, now)
         self.table.refresh(data.message.source, now)
         if data.message.destination == self._me:
@@ -222,7 +225,7 @@ class MrdvRouter:
         self._seen[key] = now + PATH_DISCOVERY_NS
         return True
 
-    def _on_rreq(self, request: Rreq, sender: int, now: int) -> None:
+    def _on_rreq(self, request: Rreq, sender: RobotId, now: int) -> None:
         if request.origin == self._me or self._blacklist.get(sender, now) > now:
             return
         self.table.update_neighbour(sender, now)
@@ -250,7 +253,7 @@ class MrdvRouter:
             return False
         return request.sequence is None or not newer(request.sequence, route.sequence)
 
-    def _reply_from_table(self, request: Rreq, route: Route, sender: int, now: int) -> None:
+    def _reply_from_table(self, request: Rreq, route: Route, sender: RobotId, now: int) -> None:
         """Answer for the destination, and tell it of the origin (RFC 3561, 6.6.2 and 6.6.3)."""
         route.add_precursor(sender)
         back = self.table.usable(request.origin, now)
@@ -289,7 +292,7 @@ class MrdvRouter:
         if back is not None:
             self._nic.send(reply, back.next_hop, RREP_BYTES, "rrep", now)
 
-    def _on_rrep(self, reply: Rrep, sender: int, now: int) -> None:
+    def _on_rrep(self, reply: Rrep, sender: RobotId, now: int) -> None:
         self.table.update_neighbour(sender, now)
         hops = reply.hops + 1
         taken = reply.destination != self._me and self.table.update(
@@ -305,7 +308,7 @@ class MrdvRouter:
                 self._nic.send(replace(reply, hops=hops), back.next_hop, RREP_BYTES, "rrep", now)
         self._send_buffered(reply.destination, now)
 
-    def _send_buffered(self, destination: int, now: int) -> None:
+    def _send_buffered(self, destination: RobotId, now: int) -> None:
         """Send what waited for a route that is there now."""
         discovery = self._discoveries.get(destination)
         if discovery is not None and self.table.usable(destination, now) is not None:
@@ -322,7 +325,7 @@ class MrdvRouter:
             route.precursors.clear()
 
     def _send_rerr(
-        self, lost: tuple[tuple[int, int], ...], listeners: tuple[int, ...], now: int
+        self, lost: tuple[tuple[RobotId, int], ...], listeners: tuple[RobotId, ...], now: int
     ) -> None:
         if self._next_allowed(self._errors, now) > now:
             return

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from radio_proxy.core.addresses import RobotId
+
 IP_UDP_BYTES = 28
 RREQ_BYTES = 24 + IP_UDP_BYTES
 RREP_BYTES = 20 + IP_UDP_BYTES
@@ -19,10 +21,10 @@ class Rreq:
     normal: pass on without MRDV's probability. destination_only: nobody may answer from its table.
     """
 
-    origin: int
+    origin: RobotId
     origin_sequence: int
     number: int
-    destination: int
+    destination: RobotId
     sequence: int | None
     hops: int
     ttl: int
@@ -34,8 +36,8 @@ class Rreq:
 class Rrep:
     """ROUTE REPLY on its way to `origin`: its sender is `hops` from destination; lifetime [ns]."""
 
-    origin: int
-    destination: int
+    origin: RobotId
+    destination: RobotId
     sequence: int
     hops: int
     lifetime: int
@@ -45,4 +47,4 @@ class Rrep:
 class Rerr:
     """ROUTE ERROR: (destination, sequence) of everything that its sender cannot reach any more."""
 
-    lost: tuple[tuple[int, int], ...]
+    lost: tuple[tuple[RobotId, int], ...]

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.routing.sequence import following, newer
 
 MS = 1_000_000
@@ -16,16 +17,16 @@ DELETE_PERIOD_NS = 15_000 * MS
 class Route:
     """Way to one destination. expires [ns]; sequence_known: RFC's "valid sequence number" flag."""
 
-    destination: int
-    next_hop: int
+    destination: RobotId
+    next_hop: RobotId
     hops: int
     sequence: int
     sequence_known: bool
     expires: int
     valid: bool = True
-    precursors: list[int] = field(default_factory=list)
+    precursors: list[RobotId] = field(default_factory=list)
 
-    def add_precursor(self, robot: int) -> None:
+    def add_precursor(self, robot: RobotId) -> None:
         """Remember a neighbour that may send through here (RFC 3561, 6.2)."""
         if robot not in self.precursors:
             self.precursors.append(robot)
@@ -35,9 +36,9 @@ class RouteTable:
     """All routes of one robot; never more than one a destination."""
 
     def __init__(self) -> None:
-        self._routes: dict[int, Route] = {}
+        self._routes: dict[RobotId, Route] = {}
 
-    def entry(self, destination: int, now: int) -> Route | None:
+    def entry(self, destination: RobotId, now: int) -> Route | None:
         """What is known of a destination, dead or alive, until DELETE_PERIOD after its death."""
         route = self._routes.get(destination)
         if route is None:
@@ -49,13 +50,13 @@ class RouteTable:
             return None
         return route
 
-    def usable(self, destination: int, now: int) -> Route | None:
+    def usable(self, destination: RobotId, now: int) -> Route | None:
         """The live route to a destination."""
         route = self.entry(destination, now)
         return route if route is not None and route.valid else None
 
     def update(
-        self, destination: int, next_hop: int, hops: int, sequence: int, expires: int, now: int
+        self, destination: RobotId, next_hop: RobotId, hops: int, sequence: int, expires: int, now: int
     ) -> bool:
         """Take over a route with a sequence number if it is better (RFC 3561, 6.2 and 6.7).
 
@@ -80,7 +81,7 @@ class RouteTable:
         route.valid = True
         return True
 
-    def update_neighbour(self, neighbour: int, now: int) -> None:
+    def update_neighbour(self, neighbour: RobotId, now: int) -> None:
         """A neighbour was heard: there is a way of one hop to it (RFC 3561, 6.2).
 
         Differs: a sequence number that was known stays in force, because forgetting it would let an
@@ -94,13 +95,13 @@ class RouteTable:
         route.expires = max(route.expires, expires) if route.valid else expires
         route.next_hop, route.hops, route.valid = neighbour, 1, True
 
-    def refresh(self, destination: int, now: int) -> None:
+    def refresh(self, destination: RobotId, now: int) -> None:
         """A route that carries data stays alive (RFC 3561, 6.2)."""
         route = self.usable(destination, now)
         if route is not None:
             route.expires = max(route.expires, now + ACTIVE_ROUTE_NS)
 
-    def break_link(self, neighbour: int, now: int) -> list[Route]:
+    def break_link(self, neighbour: RobotId, now: int) -> list[Route]:
         """The neighbour is out of reach: every route through it dies, one number newer (6.11)."""
         broken = self._through(neighbour, now)
         for route in broken:
@@ -109,7 +110,9 @@ class RouteTable:
             )
         return broken
 
-    def apply_rerr(self, neighbour: int, lost: tuple[tuple[int, int], ...], now: int) -> list[Route]:
+    def apply_rerr(
+        self, neighbour: RobotId, lost: tuple[tuple[RobotId, int], ...], now: int
+    ) -> list[Route]:
         """Routes through a neighbour that says it cannot reach these (destination, sequence) (6.11)."""
         numbers = dict(lost)
         broken = [route for route in self._through(neighbour, now) if route.destination in numbers]
@@ -117,11 +120,11 @@ class RouteTable:
             self._invalidate(route, numbers[route.destination], now)
         return broken
 
-    def destinations(self) -> tuple[int, ...]:
+    def destinations(self) -> tuple[RobotId, ...]:
         """Everything that has an entry, sorted."""
         return tuple(sorted(self._routes))
 
-    def _through(self, neighbour: int, now: int) -> list[Route]:
+    def _through(self, neighbour: RobotId, now: int) -> list[Route]:
         found = (self.usable(destination, now) for destination in self.destinations())
         return [route for route in found if route is not None and route.next_hop == neighbour]
 

@@ -14,7 +14,8 @@ one, because in one cell every neighbour passes one on.
 
 from dataclasses import dataclass, field, replace
 
-from onehop.contracts.messages import BROADCAST, DeliveryStatus
+from onehop.contracts.messages import DeliveryStatus
+from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import MAX_DISCOVERIES, DataPacket
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
 from radio_proxy.core.routing.interface import NicServices
@@ -46,7 +47,7 @@ BLACKLIST_NS = 5000 * MS
 class RouteDiscovery:
     """A discovery under way. sent: requests so far; number, patience [ns]: of the last one."""
 
-    target: int
+    target: RobotId
     sent: int = 0
     number: int = 0
     timeout: int = 0
@@ -62,11 +63,11 @@ class MrsrRouter:
         self._me = nic.robot
         self._gamma_distance = gamma_distance
         self._number = nic.incarnation << 16
-        self._discoveries: dict[int, RouteDiscovery] = {}
+        self._discoveries: dict[RobotId, RouteDiscovery] = {}
         self.buffered = 0
-        self._seen: dict[int, dict[int, int]] = {}
-        self._blacklist: dict[int, int] = {}
-        self._pending_replies: dict[tuple[int, int], int] = {}
+        self._seen: dict[RobotId, dict[int, int]] = {}
+        self._blacklist: dict[RobotId, int] = {}
+        self._pending_replies: dict[tuple[RobotId, int], int] = {}
 
     def submit(self, data: DataPacket, now: int) -> None:
         if data.message.destination in self._discoveries or not self._send_along_cache(data, now):
@@ -83,7 +84,7 @@ class MrsrRouter:
         """How many requests of others are remembered (at most 16 a robot, RFC 4728, 4.3)."""
         return sum(len(seen) for seen in self._seen.values())
 
-    def on_packet(self, packet: object, sender: int, now: int) -> None:
+    def on_packet(self, packet: object, sender: RobotId, now: int) -> None:
         if isinstance(packet, DataPacket):
             self._on_data(packet, now)
         elif isinstance(packet, Rreq):
@@ -95,7 +96,7 @@ class MrsrRouter:
             if packet.back[-1] != self._me:
                 self._nic.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
 
-    def on_overheard(self, packet: object, sender: int, now: int) -> None:
+    def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
         """Others' replies and errors teach as one's own do (RFC 4728, 3.3.1).
 
         A reply that is as short as the one that waits here makes that one needless (8.2.5).
@@ -118,10 +119,12 @@ class MrsrRouter:
             if discovery is not None and discovery.number == packet.number:
                 self._nic.at(now + discovery.timeout, self._request_route, discovery)
 
-    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
+    def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:
         """A confirmed link needs no mark: a path holds until it fails or is too old."""
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:
+    def on_undeliverable(
+        self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
+    ) -> None:
         """The link is broken: forget it, tell the source, salvage (RFC 4728, 8.3.4 and 8.3.6)."""
         self.cache.remove_link(self._me, next_hop)
         if isinstance(packet, Rrep):
@@ -164,7 +167,7 @@ class MrsrRouter:
         else:
             self._send_on(data, now)
 
-    def _cache_route(self, route: tuple[int, ...], now: int) -> None:
+    def _cache_route(self, route: tuple[RobotId, ...], now: int) -> None:
         """Cache both directions of a route that lists this robot (RFC 4728, 8.1.4)."""
         if self._me in route:
             here = route.index(self._me)
@@ -247,7 +250,7 @@ class MrsrRouter:
 
     # Requests and replies of others.
 
-    def _on_rreq(self, request: Rreq, sender: int, now: int) -> None:
+    def _on_rreq(self, request: Rreq, sender: RobotId, now: int) -> None:
         if self._me in request.route or self._blacklist.get(sender, now) > now:
             return
         route = (*request.route, self._me)
