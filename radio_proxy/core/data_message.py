@@ -7,16 +7,18 @@ from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.propagation import SILENT_DB
 
 MAX_DISCOVERIES = 2
-"""Discoveries that the origin makes for one message: at first, and once more when a hop failed."""
+"""Route discoveries that the source makes for one message: at first, and once more when a hop failed."""
 
 
 @dataclass(slots=True, eq=False)
 class DataMessage:
     """One message of one robot. Times in ns, -1 until they are known.
 
-    copies: how many robots hold it (an acknowledgement that is lost leaves two). discovering_since: start
-    of the discovery that it waits for; searches: how many there were. loss: of the copies that
-    were given up, the one that came farthest (the last one of those), and why.
+    offered: when its source handed it over. copies: how many robots hold it (an ACK that is lost leaves
+    two). loss: of the copies that were given up, the one that came farthest, and why.
+    first_service: when its source's link layer took it up. discovering_since: start of the route
+    discovery that it waits for; discoveries: how many there were; discovery_time: spent in them.
+    sinr_db, bit_error_rate: of the last attempt of its last hop.
     """
 
     number: int
@@ -38,15 +40,16 @@ class DataMessage:
 
     @property
     def service_start(self) -> int:
-        """When the origin's link layer began to serve it, its discovery included [ns].
+        """When the source's link layer began to serve it, its discovery included [ns].
 
         The wait behind other messages lies between discovery and service; it is taken out by moving the
-        start, so that arrival - service_start is discovery and service alone (radio.md).
+        start, so that arrival - service_start is discovery and service alone: a follower measures its
+        throughput by it.
         """
         return -1 if self.first_service < 0 else self.first_service - self.discovery_time_before_service
 
     def begin_service(self, now: int) -> None:
-        """A link layer takes it up; the first to do so is its origin's."""
+        """A link layer takes it up; the first to do so is that of its source."""
         if self.first_service < 0:
             self.first_service = now
             self.discovery_time_before_service = self.discovery_time
@@ -57,7 +60,7 @@ class DataMessage:
         self.bit_error_rate = bit_error_rate
 
     def begin_discovery(self, now: int) -> None:
-        """Its origin has no route for it and looks for one."""
+        """Its source has no route for it and looks for one."""
         if self.discovering_since < 0:
             self.discovering_since = now
             self.discoveries += 1
@@ -95,9 +98,9 @@ class DataMessage:
 
 @dataclass(slots=True, eq=False)
 class DataPacket:
-    """A copy of a message in the hands of one robot, never changed. path, attempts: how it came there.
+    """A copy of a message that one robot holds, never changed. path, attempts: how it came there.
 
-    route, salvaged: the source route that it carries and how often it was mended (MRSR).
+    route, salvaged: the source route that it carries and how often it was salvaged (MRSR).
     """
 
     message: DataMessage

@@ -240,7 +240,7 @@ class Dcf:
             self._end(exchange.emission, now, receiver.index)
             return
         self._end(exchange.emission, now)
-        self._at(now - exchange.delay + timing.answer_timeout, self._on_timeout, exchange)
+        self._at(now - exchange.delay + timing.response_timeout, self._on_timeout, exchange)
         nav_reset = 2 * timing.sifs + timing.cts + 2 * timing.slot
         self._at(now + nav_reset, self._on_nav_reset, reservation)
 
@@ -262,7 +262,7 @@ class Dcf:
             return
         self._end(exchange.emission, now)
         rts_end = now - timing.cts - timing.sifs - 2 * exchange.delay
-        self._at(max(now, rts_end + timing.answer_timeout), self._on_timeout, exchange)
+        self._at(max(now, rts_end + timing.response_timeout), self._on_timeout, exchange)
 
     def _send_data(self, exchange: Exchange, now: int) -> None:
         if self._continue(exchange, exchange.sender, now):
@@ -277,7 +277,7 @@ class Dcf:
             self._reserve(exchange, now, 1, timing.ack)
         if not received:
             self._end(exchange.emission, now)
-            self._at(now - exchange.delay + timing.answer_timeout, self._on_timeout, exchange)
+            self._at(now - exchange.delay + timing.response_timeout, self._on_timeout, exchange)
             return
         if exchange.undisturbed:
             self.medium.end(exchange.emission)
@@ -301,7 +301,7 @@ class Dcf:
         self._end(exchange.emission, now)
         if not received:
             data_end = now - timing.ack - timing.sifs - 2 * exchange.delay
-            self._at(max(now, data_end + timing.answer_timeout), self._on_timeout, exchange)
+            self._at(max(now, data_end + timing.response_timeout), self._on_timeout, exchange)
         elif not sender.gone:
             frame = self._finish(sender, now)
             self._listener.on_acknowledged(sender.index, frame, now)
@@ -311,7 +311,7 @@ class Dcf:
         """The next frame of an exchange, a SIFS after the last; False when its transmitter has left."""
         if transmitter.gone:
             exchange.frame.cause = DeliveryStatus.RECEIVER_GONE
-            self._at(now + self.timing.answer_timeout, self._on_timeout, exchange)
+            self._at(now + self.timing.response_timeout, self._on_timeout, exchange)
             return False
         exchange.emission = self._begin(transmitter, exchange.fade_db, now)
         return True

@@ -14,7 +14,7 @@ WAVE_SPEED = 3.0e8
 """Rounded as in the sums that the thesis's and ns-3's path losses come from [m/s]."""
 
 REACH_DB = -10.0
-"""Weaker than this, a signal neither is heard nor disturbs (0.4 dB of noise rise): it is left out."""
+"""Mean SNR below which a signal is left out: it neither gets through nor interferes (0.4 dB) [dB]."""
 
 THERMAL_NOISE_DBM = -100.55
 """kTB of a 22 MHz channel at 290 K [dBm]."""
@@ -44,7 +44,7 @@ class LinkBudget:
 
     @property
     def reach(self) -> float:
-        """Distance beyond which nothing is heard and nothing disturbed [m]."""
+        """Distance beyond which a signal neither gets through nor interferes [m]."""
         margin = self.snr_reference_db - REACH_DB
         return self.reference_distance * elementary.power_of_ten(
             max(0.0, margin / (10.0 * self.exponent))

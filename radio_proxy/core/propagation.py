@@ -1,4 +1,4 @@
-"""How strongly each robot hears each other: path loss, walls, cuts and jams (thesis 3.7.1).
+"""At which SNR each robot receives each other: path loss, walls, cuts and jams (thesis 3.7.1).
 
 The mean SNR of every pair, sender by sender, computed when a sender first transmits in a tick.
 """
@@ -12,7 +12,7 @@ from radio_proxy.core.airtime import delay_ns
 from radio_proxy.core.link_budget import LinkBudget
 
 SILENT_DB = -200.0
-"""SNR of what cannot be heard at all: cut off, absent, or out of reach [dB]."""
+"""SNR of what cannot be received at all: cut off, absent, or out of reach [dB]."""
 
 OWN_DB = 200.0
 """A station's own emission drowns everything else in its receiver [dB]."""
@@ -37,7 +37,7 @@ def walls_crossed(walls: tuple[Wall, ...], x0: float, y0: float, x1: float, y1: 
 
 
 class Propagation:
-    """Who is where in this tick, and at which mean SNR each hears each. robots: sorted ids.
+    """Who is where in this tick, and at which mean SNR each receives each. robots: sorted ids.
 
     noise_rise_db: noise at every station above the floor, by jams [dB].
     """
@@ -47,7 +47,7 @@ class Propagation:
         self._index = {robot: StationIndex(i) for i, robot in enumerate(robots)}
         self._count = len(robots)
         self._walls = walls if budget.wall_loss_db else ()
-        self._place: dict[StationIndex, tuple[float, float]] = {}
+        self._positions: dict[StationIndex, tuple[float, float]] = {}
         self._rows: dict[StationIndex, list[float]] = {}
         self._sensed_by_all: dict[StationIndex, bool] = {}
         self._delays: dict[tuple[StationIndex, StationIndex], int] = {}
@@ -69,7 +69,7 @@ class Propagation:
         self._stale = True
 
     def mean_snr_row(self, sender: StationIndex) -> list[float]:
-        """Mean SNR at every station of what `sender` emits in this tick, walls and cuts included [dB]."""
+        """Mean SNR at every station of what `sender` emits in this tick [dB]."""
         if self._stale:
             self._place_robots()
         row = self._rows.get(sender)
@@ -88,7 +88,7 @@ class Propagation:
         """Distance between two stations [m]; 0 when one of them is absent."""
         if self._stale:
             self._place_robots()
-        here, there = self._place.get(a), self._place.get(b)
+        here, there = self._positions.get(a), self._positions.get(b)
         if here is None or there is None:
             return 0.0
         return math.hypot(here[0] - there[0], here[1] - there[1])
@@ -100,21 +100,21 @@ class Propagation:
         sensed = self._sensed_by_all.get(sender)
         if sensed is None:
             sensed = False
-            if sender in self._place:
+            if sender in self._positions:
                 row, least = self.mean_snr_row(sender), self.budget.carrier_sense_db
-                sensed = all(row[i] >= least for i in self._place)
+                sensed = all(row[i] >= least for i in self._positions)
             self._sensed_by_all[sender] = sensed
         return sensed
 
     def farthest(self, sender: StationIndex) -> float:
-        """Distance from `sender` to the farthest robot that hears it [m]."""
+        """Distance from `sender` to the farthest robot that it reaches [m]."""
         farthest = self._farthest.get(sender)
         if self._stale or farthest is None:
             row = self.mean_snr_row(sender)
-            x, y = self._place[sender]
+            x, y = self._positions[sender]
             farthest = max(
                 math.hypot(there_x - x, there_y - y)
-                for i, (there_x, there_y) in self._place.items()
+                for i, (there_x, there_y) in self._positions.items()
                 if row[i] > SILENT_DB
             )
             self._farthest[sender] = farthest
@@ -127,24 +127,24 @@ class Propagation:
         self._delays = {}
         self._farthest = {}
         self._cells = {}
-        self._place = {}
+        self._positions = {}
         reach = self.budget.reach
         for presence in self._present:
             index = self._index[RobotId(presence.robot)]
             x, y = presence.pose.x, presence.pose.y
-            self._place[index] = (x, y)
+            self._positions[index] = (x, y)
             cell = math.floor(x / reach), math.floor(y / reach)
             self._cells.setdefault(cell, []).append((index, x, y))
         if self._jams or any(self.noise_rise_db):
             self.noise_rise_db = [self._noise_rise(StationIndex(i)) for i in range(self._count)]
 
     def _noise_rise(self, index: StationIndex) -> float:
-        place = self._place.get(index)
-        if place is None:
+        position = self._positions.get(index)
+        if position is None:
             return 0.0
         total = 1.0
         for jam in self._jams:
-            if math.hypot(place[0] - jam.x, place[1] - jam.y) <= jam.radius:
+            if math.hypot(position[0] - jam.x, position[1] - jam.y) <= jam.radius:
                 total += elementary.power_of_ten((jam.noise_dbm - self.budget.noise_dbm) / 10.0)
         return 10.0 * elementary.log10(total)
 
@@ -154,7 +154,7 @@ class Propagation:
         budget = self.budget
         reach, nearest = budget.reach, budget.reference_distance * budget.reference_distance
         reference_db, slope_db = budget.snr_reference_db, 5.0 * budget.exponent
-        x, y = self._place[sender]
+        x, y = self._positions[sender]
         column, line = math.floor(x / reach), math.floor(y / reach)
         for near in ((column + dx, line + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)):
             for other, there_x, there_y in self._cells.get(near, ()):

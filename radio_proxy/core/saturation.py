@@ -1,4 +1,4 @@
-"""Saturated stations on the mission's own event engine: what theory is compared with."""
+"""Saturated stations on the DCF that carries the missions: what theory is compared with."""
 
 import math
 from dataclasses import dataclass
@@ -40,7 +40,7 @@ class Tally:
 
 
 def ring(stations: int, msdu_bytes: int, rts_cts: bool) -> Load:
-    """One cell: everyone hears everyone equally, each sends to the next (one alone: to a listener)."""
+    """One cell: each sends to the next; one alone sends to a second that is silent."""
     count = max(stations, 2)
     receivers = tuple(StationIndex((i + 1) % count) for i in range(stations))
     return Load(((0.0, 0.0),) * count, receivers, msdu_bytes, rts_cts)

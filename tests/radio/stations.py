@@ -32,7 +32,7 @@ def fhss(window: int, stages: int) -> Timing:
         rts=288_000,
         cts=240_000,
         ack=240_000,
-        answer_timeout=300_000,
+        response_timeout=300_000,
         mac_header_bytes=34,
         rate_mbps=1.0,
         cw_min=window - 1,

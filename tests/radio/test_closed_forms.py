@@ -1,4 +1,4 @@
-"""Closed forms against the numbers of radio.md and of Bianchi's paper."""
+"""Closed forms against numbers computed by hand and those of Bianchi's paper."""
 
 import pytest
 
@@ -99,7 +99,7 @@ def test_bianchi_for_his_own_setting(
     window: int, stages: int, rts_cts: bool, row: tuple[float, ...]
 ) -> None:
     for n, expected in zip((5, 10, 20, 50), row, strict=True):
-        value = bianchi_normalized(n, fhss(window, stages), 1023, rts_cts, propagation=1000)
+        value = bianchi_normalized(n, fhss(window, stages), 1023, rts_cts, propagation_delay=1000)
         assert value == pytest.approx(expected, abs=1.01e-4)
 
 

@@ -31,7 +31,7 @@ def test_shortcuts_change_nothing(stations: int, rts_cts: bool) -> None:
 
 
 def test_an_idle_medium_is_entered_after_difs_without_backoff() -> None:
-    """50 + 352 + 10 + 304 + 10 + 6816 us (radio.md)."""
+    """50 + 352 + 10 + 304 + 10 + 6816 us."""
     cell = Cell([(0, 0), (0, 0)], STILL)
     cell.send_at(1000, 0, 1)
     cell.run(20_000)

@@ -15,7 +15,7 @@ number = st.integers(0, 2**32 - 1)
     [(2, 1, 0.5), (2, 3, 0.125), (0.5, 7, 1.0), (3, 10, 1.69e-5), (0, 4, 1.0), (1, 9, 1.0)],
 )
 def test_forwarding_probability(speed: float, weight: float, expected: float) -> None:
-    """radio.md on thesis 3.7.2."""
+    """Thesis 3.7.2: (1/v)^gamma."""
     assert forwarding_probability(speed, weight) == pytest.approx(expected, rel=3e-3)
 
 

@@ -85,7 +85,7 @@ def fly(folder: Path, *settings: str, faults: tuple[str, ...]) -> Diary:
 def test_a_follower_cut_from_its_leader_is_led_over_a_relay_and_hurries(
     tmp_path: Path, routing: str
 ) -> None:
-    """A relay gives .41 Mb/s, the direct link .78, the threshold is .5333 (radio.md; thesis 3.5)."""
+    """A relay gives .41 Mb/s, the direct link .78, the threshold is .5333 (thesis 3.5)."""
     settings = (f'radio.routing="{routing}"', "radio.shadowing_db=0", "clock.limit_s=45")
     diary = fly(tmp_path, *settings, faults=(cut(25, [6], [3], 100),))
     for begin_s, hops, weak, k_rho in ((20, 1, False, 1.0), (32, 2, True, 3.0)):

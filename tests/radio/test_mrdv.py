@@ -28,7 +28,7 @@ def request(destination: int, **changes: object) -> Rreq:
 
 
 def test_packet_sizes() -> None:
-    """5.1 to 5.3, and 28 B of IP and UDP (radio.md)."""
+    """5.1 to 5.3, and 28 B of IP and UDP."""
     assert (RREQ_BYTES, RREP_BYTES, rerr_bytes(1), rerr_bytes(3)) == (52, 48, 40, 56)
 
 

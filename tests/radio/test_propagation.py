@@ -46,20 +46,20 @@ def propagation_of(
 
 
 def test_free_space_loss_at_a_metre() -> None:
-    """PL(1 m, 2.4 GHz) = 40.046 dB; kTB of 22 MHz at 290 K = -100.55 dBm (radio.md)."""
+    """PL(1 m, 2.4 GHz) = 40.046 dB; kTB of 22 MHz at 290 K = -100.55 dBm."""
     assert free_space_loss_db(1.0, 2.4e9) == pytest.approx(40.046, abs=5e-4)
     assert 10 * math.log10(1.380649e-23 * 290 * 22e6 * 1e3) == pytest.approx(THERMAL_NOISE_DBM, abs=5e-3)
 
 
 def test_preset_thesis() -> None:
-    """SNR = 60 - 20 log10 d, range 25.1 m at 32 dB (radio.md)."""
+    """SNR = 60 - 20 log10 d, range 25.1 m at 32 dB."""
     assert THESIS.mean_snr_db(1.0) == pytest.approx(60.0, abs=1e-9)
     assert THESIS.mean_snr_db(10.0) == pytest.approx(40.0, abs=1e-9)
     assert THESIS.mean_snr_db(25.1) >= 32.0 > THESIS.mean_snr_db(25.2)
 
 
 def test_preset_physical() -> None:
-    """SNR = 68.5 - 26 log10 d, range 25.4 m (radio.md)."""
+    """SNR = 68.5 - 26 log10 d, range 25.4 m."""
     assert PHYSICAL.mean_snr_db(1.0) == pytest.approx(68.5, abs=0.01)
     assert PHYSICAL.mean_snr_db(10.0) == pytest.approx(42.5, abs=0.01)
     assert PHYSICAL.mean_snr_db(25.3) >= 32.0 > PHYSICAL.mean_snr_db(25.4)
@@ -78,9 +78,8 @@ def test_every_wall_costs_its_loss() -> None:
     hard = RadioSection(wall_loss_db=7.0)
     bare = propagation_of((0, 0), (10, 0)).mean_snr_row(0)[1]
     assert propagation_of((0, 0), (10, 0), walls=walls).mean_snr_row(0)[1] == bare
-    assert propagation_of((0, 0), (10, 0), section=hard, walls=walls).mean_snr_row(0)[1] == pytest.approx(
-        bare - 14.0
-    )
+    walled = propagation_of((0, 0), (10, 0), section=hard, walls=walls)
+    assert walled.mean_snr_row(0)[1] == pytest.approx(bare - 14.0)
 
 
 coordinate = st.floats(-20, 20)

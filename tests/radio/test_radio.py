@@ -11,14 +11,14 @@ STILL = RadioSection(routing="direct", shadowing_db=0.0, mac_header_bytes=28)
 
 
 def test_idle_exchange_takes_what_ns3_measured() -> None:
-    """ns-3 3.44, one hop without backoff, 28 B header: 7.542 ms (radio.md)."""
+    """ns-3 3.44, one hop without backoff, 28 B header: 7.542 ms."""
     (verdict,) = Mission(line(2, 5.0), STILL).run(1, {1: (message(2),)})
     assert verdict.status is DeliveryStatus.DELIVERED
     assert verdict.arrival_ns - verdict.service_start_ns == pytest.approx(7_542_000, abs=100)
 
 
 def test_waiting_behind_other_messages_is_not_service() -> None:
-    """Five Nexts queued together each measure their own service, not the queue (radio.md)."""
+    """Five Nexts queued together each measure their own service, not the queue."""
     team = line(6, 2.0)
     outbox = tuple(message(i) for i in (2, 3, 4, 5, 6))
     verdicts = Mission(team, STILL).run(2, {1: outbox})
@@ -138,7 +138,7 @@ def test_what_a_relay_drops_before_it_acknowledges_has_a_verdict() -> None:
 
 
 def test_discovery_is_service_and_waiting_is_not() -> None:
-    """radio.md: discovery, retries and relays count, the wait behind other messages does not."""
+    """Discovery, retries and relays count, the wait behind other messages does not."""
     mission = Mission(line(3, 20.0), RadioSection(routing="mrdv", shadowing_db=0.0))
     verdicts = mission.run(40, {1: (message(3), message(3), message(3))})
     for verdict in verdicts:

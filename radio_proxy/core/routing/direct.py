@@ -28,13 +28,17 @@ class DirectRouter:
         """Others' control packets say nothing that this protocol uses."""
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:
-        """Nothing waits for an answer."""
+        """Nothing waits for a reply."""
 
     def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:
         """Nothing is kept that could be refreshed."""
 
     def on_undeliverable(
-        self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
-    ) -> None:  # noqa: ARG002
+        self,
+        packet: object,
+        next_hop: RobotId,  # noqa: ARG002
+        cause: DeliveryStatus,
+        now: int,  # noqa: ARG002
+    ) -> None:
         assert isinstance(packet, DataPacket)
         self._nic.drop(packet, cause)

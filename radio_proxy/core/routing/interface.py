@@ -62,7 +62,7 @@ class Router(Protocol):
         ...
 
     def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
-        """A control packet for another robot was heard; `sender` is the neighbour that sent it."""
+        """A control packet for another robot was overheard; `sender` is the neighbour that sent it."""
         ...
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:

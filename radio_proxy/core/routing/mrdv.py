@@ -3,10 +3,10 @@
 Left out, as the RFC allows: hello messages (6.9, the link layer's feedback is used), local repair
 (6.12), RREP-ACK (6.8: the link layer acknowledges every unicast RREP).
 
-Differs: the probability holds during the expanding ring discovery alone; requests through the whole net are
-normal ones, because waiting for three of them (20 s) before the normal discovery would outlast the team.
-After a restart a robot asks for answers of the destination alone (6.3, flag D) for DELETE_PERIOD instead
-of keeping silent so long (6.13). Requests are jittered before they are passed on (as RFC 4728 does).
+Differs: the probability holds during the expanding ring search alone; requests through the whole network
+are normal ones, because waiting for three of them (20 s) before the normal discovery would outlast the
+team. After a restart a robot lets the destination alone reply (6.3, flag D) for DELETE_PERIOD instead of
+keeping silent so long (6.13). Requests are jittered before they are passed on (as RFC 4728 does).
 """
 
 from collections import deque
@@ -21,17 +21,36 @@ from radio_proxy.core.routing.mrdv_packets import RREP_BYTES, RREQ_BYTES, Rerr, 
 from radio_proxy.core.routing.mrdv_table import ACTIVE_ROUTE_NS, DELETE_PERIOD_NS, MS, Route, RouteTable
 from radio_proxy.core.routing.sequence import following, freshest, newer
 
+# Timers and limits of RFC 3561, section 10, under its names.
+
 NODE_TRAVERSAL_NS = 40 * MS
+"""Time of a hop, waiting and processing included [ns]."""
+
 NET_DIAMETER = 35
+"""Most hops between two robots."""
+
 NET_TRAVERSAL_NS = 2 * NODE_TRAVERSAL_NS * NET_DIAMETER
+"""How long a request through the whole network waits for its reply [ns]."""
+
 PATH_DISCOVERY_NS = 2 * NET_TRAVERSAL_NS
+"""How long a request is remembered, lest it be passed on twice [ns]."""
+
 MY_ROUTE_NS = 2 * ACTIVE_ROUTE_NS
+"""Lifetime that a destination gives the route to itself [ns]."""
+
 TTL_START, TTL_INCREMENT, TTL_THRESHOLD = 1, 2, 7
+"""The expanding ring search: first ring, step and last ring [hops]."""
+
 TIMEOUT_BUFFER = 2
+"""Hops that the timeout of a ring allows for congestion."""
+
 RREQ_RETRIES = 2
+"""Repetitions of a request through the whole network."""
+
 RATE_LIMIT = 10
+"""RREQ_RATELIMIT and RERR_RATELIMIT: packets of each kind that a robot originates [1/s]."""
+
 SECOND_NS = 1000 * MS
-"""Timers and limits of RFC 3561, section 10."""
 
 BUFFER_MESSAGES = 64
 """Messages that wait for routes; the newest is dropped when it is full (size of RFC 4728, 4.2)."""
@@ -39,7 +58,10 @@ BUFFER_MESSAGES = 64
 
 @dataclass(slots=True, eq=False)
 class RouteDiscovery:
-    """A discovery under way. network_wide: requests sent through the whole net so far."""
+    """A discovery under way. network_wide: requests through the whole network so far.
+
+    number: of the last request.
+    """
 
     destination: RobotId
     ttl: int
@@ -90,7 +112,7 @@ class MrdvRouter:
         """Others' control packets say nothing that this protocol uses."""
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:
-        """The patience with a request counts from its origination (RFC 3561, 6.3)."""
+        """The timeout of a request counts from its origination (RFC 3561, 6.3)."""
 
     def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:  # noqa: ARG002
         self.table.refresh(next_hop, now)
@@ -182,10 +204,10 @@ class MrdvRouter:
             discovery.network_wide += 1
         else:
             timeout = 2 * NODE_TRAVERSAL_NS * (discovery.ttl + TIMEOUT_BUFFER)
-        self._nic.at(now + timeout, self._on_no_answer, (discovery, discovery.number))
+        self._nic.at(now + timeout, self._on_no_reply, (discovery, discovery.number))
 
-    def _on_no_answer(self, asked: tuple[RouteDiscovery, int], now: int) -> None:
-        discovery, number = asked
+    def _on_no_reply(self, requested: tuple[RouteDiscovery, int], now: int) -> None:
+        discovery, number = requested
         if self._discoveries.get(discovery.destination) is not discovery or discovery.number != number:
             return
         if discovery.network_wide > RREQ_RETRIES:
@@ -248,13 +270,13 @@ class MrdvRouter:
         self._send_buffered(request.origin, now)
 
     def _may_reply_from_table(self, request: Rreq, route: Route, now: int) -> bool:
-        """Whether a route in the table is fresh enough to answer with (RFC 3561, 6.6)."""
+        """Whether a route in the table is fresh enough to reply with (RFC 3561, 6.6)."""
         if request.destination_only or now < self._reboot_hold_until or not route.sequence_known:
             return False
         return request.sequence is None or not newer(request.sequence, route.sequence)
 
     def _reply_from_table(self, request: Rreq, route: Route, sender: RobotId, now: int) -> None:
-        """Answer for the destination, and tell it of the origin (RFC 3561, 6.6.2 and 6.6.3)."""
+        """Reply for the destination, with a gratuitous one for itself (RFC 3561, 6.6.2 and 6.6.3)."""
         route.add_precursor(sender)
         back = self.table.usable(request.origin, now)
         if back is not None:
@@ -309,25 +331,25 @@ class MrdvRouter:
         self._send_buffered(reply.destination, now)
 
     def _send_buffered(self, destination: RobotId, now: int) -> None:
-        """Send what waited for a route that is there now."""
+        """Send the messages that waited for a route that is there now."""
         discovery = self._discoveries.get(destination)
         if discovery is not None and self.table.usable(destination, now) is not None:
             for data in self._end_discovery(discovery, now):
                 self.submit(data, now)
 
     def _report_broken(self, broken: list[Route], now: int) -> None:
-        """Tell the precursors of routes that died (RFC 3561, 6.11)."""
-        told = [route for route in broken if route.precursors]
-        listeners = tuple(sorted({robot for route in told for robot in route.precursors}))
-        if told:
-            self._send_rerr(tuple((r.destination, r.sequence) for r in told), listeners, now)
+        """Send an error to the precursors of routes that broke (RFC 3561, 6.11)."""
+        in_use = [route for route in broken if route.precursors]
+        precursors = tuple(sorted({robot for route in in_use for robot in route.precursors}))
+        if in_use:
+            self._send_rerr(tuple((r.destination, r.sequence) for r in in_use), precursors, now)
         for route in broken:
             route.precursors.clear()
 
     def _send_rerr(
-        self, lost: tuple[tuple[RobotId, int], ...], listeners: tuple[RobotId, ...], now: int
+        self, lost: tuple[tuple[RobotId, int], ...], receivers: tuple[RobotId, ...], now: int
     ) -> None:
         if self._next_allowed(self._errors, now) > now:
             return
-        target = listeners[0] if len(listeners) == 1 else BROADCAST
+        target = receivers[0] if len(receivers) == 1 else BROADCAST
         self._nic.send(Rerr(lost), target, rerr_bytes(len(lost)), "rerr", now)

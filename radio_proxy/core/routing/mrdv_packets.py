@@ -1,12 +1,15 @@
-"""Control packets of AODV with their sizes on the air (RFC 3561, section 5; 28 B of IP and UDP)."""
+"""Control packets of AODV with their sizes (RFC 3561, section 5; 28 B of IP and UDP)."""
 
 from dataclasses import dataclass
 
 from radio_proxy.core.addresses import RobotId
 
 IP_UDP_BYTES = 28
+"""Headers of IP (20 B) and UDP (8 B), which carry AODV [B]."""
+
 RREQ_BYTES = 24 + IP_UDP_BYTES
 RREP_BYTES = 20 + IP_UDP_BYTES
+"""Sizes of ROUTE REQUEST and ROUTE REPLY (RFC 3561, 5.1 and 5.2) [B]."""
 
 
 def rerr_bytes(destinations: int) -> int:
@@ -18,7 +21,7 @@ def rerr_bytes(destinations: int) -> int:
 class Rreq:
     """ROUTE REQUEST. sequence: last known of the destination, None for unknown.
 
-    normal: pass on without MRDV's probability. destination_only: nobody may answer from its table.
+    normal: pass on without MRDV's probability. destination_only: nobody may reply from its table.
     """
 
     origin: RobotId

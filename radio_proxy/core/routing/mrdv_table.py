@@ -6,16 +6,21 @@ from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.routing.sequence import following, newer
 
 MS = 1_000_000
+"""Nanoseconds in a millisecond."""
+
 ACTIVE_ROUTE_NS = 3000 * MS
-"""ACTIVE_ROUTE_TIMEOUT (RFC 3561, section 10)."""
+"""ACTIVE_ROUTE_TIMEOUT: lifetime of a route without use (RFC 3561, section 10) [ns]."""
 
 DELETE_PERIOD_NS = 15_000 * MS
-"""How long a dead entry keeps its sequence number (K * ACTIVE_ROUTE_TIMEOUT, K = 5)."""
+"""DELETE_PERIOD: how long an invalid entry keeps its sequence number (5 * ACTIVE_ROUTE_TIMEOUT) [ns]."""
 
 
 @dataclass(slots=True, eq=False)
 class Route:
-    """Way to one destination. expires [ns]; sequence_known: RFC's "valid sequence number" flag."""
+    """Route to one destination. expires: when it becomes invalid, or, invalid, when it is deleted [ns].
+
+    sequence_known: the RFC's "valid sequence number" flag.
+    """
 
     destination: RobotId
     next_hop: RobotId
@@ -39,7 +44,7 @@ class RouteTable:
         self._routes: dict[RobotId, Route] = {}
 
     def entry(self, destination: RobotId, now: int) -> Route | None:
-        """What is known of a destination, dead or alive, until DELETE_PERIOD after its death."""
+        """The entry of a destination, valid or invalid, until DELETE_PERIOD is over."""
         route = self._routes.get(destination)
         if route is None:
             return None
@@ -51,7 +56,7 @@ class RouteTable:
         return route
 
     def usable(self, destination: RobotId, now: int) -> Route | None:
-        """The live route to a destination."""
+        """The valid route to a destination."""
         route = self.entry(destination, now)
         return route if route is not None and route.valid else None
 
@@ -60,7 +65,7 @@ class RouteTable:
     ) -> bool:
         """Take over a route with a sequence number if it is better (RFC 3561, 6.2 and 6.7).
 
-        Better is: newer, or as new while ours is dead or longer, or ours has no number. A live route
+        Better is: newer, or as new while ours is invalid or longer, or ours has no number. A valid route
         that is confirmed keeps its longer lifetime. Returns whether the table now leads that way.
         """
         route = self.entry(destination, now)
@@ -82,7 +87,7 @@ class RouteTable:
         return True
 
     def update_neighbour(self, neighbour: RobotId, now: int) -> None:
-        """A neighbour was heard: there is a way of one hop to it (RFC 3561, 6.2).
+        """A packet came from a neighbour: there is a route of one hop to it (RFC 3561, 6.2).
 
         Differs: a sequence number that was known stays in force, because forgetting it would let an
         older route in, which may lead back here.
@@ -102,7 +107,7 @@ class RouteTable:
             route.expires = max(route.expires, now + ACTIVE_ROUTE_NS)
 
     def break_link(self, neighbour: RobotId, now: int) -> list[Route]:
-        """The neighbour is out of reach: every route through it dies, one number newer (6.11)."""
+        """The neighbour is out of reach: every route through it is invalid, one number newer (6.11)."""
         broken = self._through(neighbour, now)
         for route in broken:
             self._invalidate(
@@ -113,7 +118,7 @@ class RouteTable:
     def apply_rerr(
         self, neighbour: RobotId, lost: tuple[tuple[RobotId, int], ...], now: int
     ) -> list[Route]:
-        """Routes through a neighbour that says it cannot reach these (destination, sequence) (6.11)."""
+        """A neighbour reports (destination, sequence) that it lost: routes through it are invalid (6.11)."""
         numbers = dict(lost)
         broken = [route for route in self._through(neighbour, now) if route.destination in numbers]
         for route in broken:

@@ -4,12 +4,12 @@ Left out, as the RFC allows: flow state, automatic route shortening, piggybackin
 the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
 
 Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
-flag for normal forwarding. At the origin a message is searched for twice at most, and its time in the
+flag for normal forwarding. The source discovers a route for a message twice at most, and its time in the
 send buffer counts from when it was handed over. A robot that waits to reply out of its cache listens for
 others' replies, not for the origin's first data (8.2.5), and routes are learnt from others' replies and
-errors but not from their data (3.3.1), because control packets are the only frames of others that a card
-hands up here. A target answers the copies of a request that came no farther than the first
-one, because in one cell every neighbour passes one on.
+errors but not from their data (3.3.1), because control packets are the only frames of others that a NIC
+hands up here. A target replies to the copies of a request that came no farther than the first one,
+because in one cell every neighbour passes one on.
 """
 
 from dataclasses import dataclass, field, replace
@@ -30,22 +30,44 @@ from radio_proxy.core.routing.mrsr_packets import (
 )
 
 MS = 1_000_000
+"""Nanoseconds in a millisecond."""
+
+# Timers and limits of RFC 4728, section 9.
+
 NONPROPAGATING_NS = 30 * MS
+"""NonpropRequestTimeout: how long the request to the neighbours alone waits for its reply [ns]."""
+
 REQUEST_PERIOD_NS = 500 * MS
+"""RequestPeriod: the same of the first request through the whole network; it doubles then [ns]."""
+
 MAX_REQUEST_PERIOD_NS = 10_000 * MS
+"""MaxRequestPeriod: up to which it doubles [ns]."""
+
 MAX_REQUESTS = 16
+"""MaxRequestRexmt: repetitions of a request in one discovery."""
+
 REQUEST_IDS = 16
+"""RequestTableIds: requests of one robot that are remembered."""
+
 HOP_LIMIT = 255
+"""DiscoveryHopLimit of a request through the whole network [hops]."""
+
 SEND_BUFFER = 64
+"""Messages that wait for routes; the newest is dropped when it is full (4.2 leaves the size open)."""
+
 SEND_BUFFER_TIMEOUT_NS = 30_000 * MS
+"""SendBufferTimeout [ns]."""
+
 MAX_SALVAGE = 15
+"""MaxSalvageCount: how often one message is sent along another route by a robot on its way."""
+
 BLACKLIST_NS = 5000 * MS
-"""Timers and limits of RFC 4728, section 9 (the blacklist's is left to the implementation there)."""
+"""How long a neighbour that acknowledges no replies stays on the blacklist (4.6 leaves it open) [ns]."""
 
 
 @dataclass(slots=True, eq=False)
 class RouteDiscovery:
-    """A discovery under way. sent: requests so far; number, patience [ns]: of the last one."""
+    """A discovery under way. sent: requests so far; number, timeout [ns]: of the last one."""
 
     target: RobotId
     sent: int = 0
@@ -113,7 +135,7 @@ class MrsrRouter:
             self.cache.remove_link(packet.a, packet.b)
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:
-        """The patience with a request counts from when it is on the air."""
+        """The timeout of a request counts from its transmission."""
         if isinstance(packet, Rreq) and packet.origin == self._me:
             discovery = self._discoveries.get(packet.target)
             if discovery is not None and discovery.number == packet.number:
@@ -195,7 +217,7 @@ class MrsrRouter:
         self._request_route(discovery, now)
 
     def _request_route(self, discovery: RouteDiscovery, now: int) -> None:
-        """The next request: the neighbours first, then the net, ever more rarely (RFC 4728, 8.2.1)."""
+        """The next request: to the neighbours, then to all, ever more rarely (RFC 4728, 8.2.1)."""
         if self._discoveries.get(discovery.target) is not discovery:
             return
         if discovery.sent > MAX_REQUESTS:

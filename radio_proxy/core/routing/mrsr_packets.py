@@ -5,15 +5,20 @@ from dataclasses import dataclass
 from radio_proxy.core.addresses import RobotId
 
 IP_BYTES = 20
+"""IP header, which carries DSR [B]."""
+
 FIXED_BYTES = 4
+"""Fixed portion of the DSR options header (6.1) [B]."""
+
 RERR_OPTION_BYTES = 16
+"""ROUTE ERROR option with one unreachable robot (6.4) [B]."""
 
 
 def source_route_bytes(route: tuple[RobotId, ...]) -> int:
     """What a source route adds to a message: the fixed header and the route, 4 B a robot [B].
 
     Differs: RFC 4728 6.7 lists the robots between source and destination, here both ends are listed too,
-    because the implementation that the times of radio.md were measured on does so.
+    because ns-3 3.44, which the times of the tests were measured with, does so.
     """
     return FIXED_BYTES + 4 + 4 * len(route)
 
@@ -41,7 +46,7 @@ class Rreq:
 class Rrep:
     """ROUTE REPLY: `found` leads from origin to target, `back` from the replier to the origin.
 
-    number: of the request that it answers.
+    number: of the request that it replies to.
     """
 
     number: int
