@@ -18,7 +18,7 @@ HOP_NS = MS
 
 @dataclass(frozen=True)
 class Sent:
-    """A packet on the air: when, by whom, to whom (BROADCAST for all), how large."""
+    """A transmitted packet: when, by whom, to whom (BROADCAST for all), how large."""
 
     time_ns: int
     sender: int
@@ -28,7 +28,7 @@ class Sent:
 
 
 class NetNic:
-    """A robot's card on the test network."""
+    """A robot's NIC on the test network."""
 
     def __init__(self, net: "Net", robot: int, incarnation: int) -> None:
         self.robot = robot
@@ -45,11 +45,11 @@ class NetNic:
     def deliver(self, data: DataPacket, now: int) -> None:
         self._net.delivered.append((now, data))
         data.message.has_verdict = True
-        self._net.release(data.message)
+        self._net.release_copy(data.message)
 
     def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
         data.message.loss = (data, status)
-        self._net.release(data.message)
+        self._net.release_copy(data.message)
 
     def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
         self._net.at(time_ns, lambda given, now: event(given, now) if self.alive else None, argument)
@@ -67,7 +67,7 @@ class NetNic:
 class Net:
     """Robots, the links among them, and everything that was sent. protocol: "mrdv" or "mrsr".
 
-    hold_ns: how long a packet waits in its card.
+    hold_ns: how long a packet waits in its queue.
     """
 
     def __init__(self, protocol: str, robots: Iterable[int], links: Iterable[tuple[int, int]]) -> None:
@@ -91,7 +91,7 @@ class Net:
             self.start(robot, 0)
 
     def start(self, robot: int, incarnation: int) -> None:
-        """A robot's card comes up with empty tables."""
+        """A robot's NIC comes up with empty tables."""
         nic = NetNic(self, robot, incarnation)
         if self.protocol == "mrdv":
             nic.router = MrdvRouter(nic, 10.0, self.now)
@@ -100,7 +100,7 @@ class Net:
         self.nics[robot] = nic
 
     def stop(self, robot: int) -> None:
-        """A robot's card dies with everything in it."""
+        """A robot's NIC goes down with everything in it."""
         nic = self.nics.pop(robot)
         nic.alive = False
         for data in nic.router.abandon():
@@ -133,7 +133,7 @@ class Net:
         self.sent.append(Sent(now, nic.robot, target, packet, size_bytes))
         self.at(now + self.hold_ns + HOP_NS, self._arrive, (nic, packet, target))
 
-    def release(self, message: DataMessage) -> None:
+    def release_copy(self, message: DataMessage) -> None:
         """A robot holds a message no more; the last one loses it unless it was delivered."""
         message.copies -= 1
         assert message.copies >= 0
@@ -163,7 +163,7 @@ class Net:
                 nic.drop(packet, DeliveryStatus.SENDER_GONE)
         elif reached and not self.loss(target, nic.robot):
             if isinstance(packet, DataPacket):
-                self.release(packet.message)
+                self.release_copy(packet.message)
             nic.router.on_acknowledged(packet, target, now)
         else:
             failed = packet.tried(7) if isinstance(packet, DataPacket) else packet

@@ -143,8 +143,8 @@ def test_a_cut_carries_nothing_and_heals() -> None:
 def test_a_jam_raises_losses_inside_its_disc_alone() -> None:
     mission = Mission({1: (0.0, 0.0), 2: (6.0, 0.0), 3: (0.0, 6.0)}, still("direct"))
     mission.jams = (Jam(6.0, 0.0, 2.0, -40.0),)
-    fates = {v.receiver: v.status for v in mission.run(4, {1: (message(2), message(3))})}
-    assert fates == {2: DeliveryStatus.BELOW_THRESHOLD, 3: DeliveryStatus.DELIVERED}
+    statuses = {v.receiver: v.status for v in mission.run(4, {1: (message(2), message(3))})}
+    assert statuses == {2: DeliveryStatus.BELOW_THRESHOLD, 3: DeliveryStatus.DELIVERED}
 
 
 def test_bit_errors_are_told_from_a_weak_signal() -> None:

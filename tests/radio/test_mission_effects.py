@@ -35,13 +35,13 @@ y = 30
 
 @dataclass
 class Diary:
-    """What went over the air, and what the robots said of themselves, tick by tick."""
+    """What the radio carried, and what the robots said of themselves, tick by tick."""
 
-    ethers: list[RadioRecord] = field(default_factory=list)
+    records: list[RadioRecord] = field(default_factory=list)
     statuses: list[dict[int, Status]] = field(default_factory=list)
 
     def hear(self, tick: int, record: list[tuple[str, bytes]]) -> None:  # noqa: ARG002
-        self.ethers.append(decode(RadioRecord, dict(record)[topics.RADIO_RECORD]))
+        self.records.append(decode(RadioRecord, dict(record)[topics.RADIO_RECORD]))
 
     def watch(self, world: World, actions: Mapping[int, Action]) -> None:  # noqa: ARG002
         self.statuses.append({i: action.status for i, action in actions.items()})
@@ -50,7 +50,7 @@ class Diary:
         """The Next messages that were settled in a stretch of time."""
         return [
             verdict
-            for record in self.ethers
+            for record in self.records
             if begin_s * SECOND <= record.time_ns < end_s * SECOND
             for verdict in record.verdicts
             if verdict.msdu_bytes == 800
@@ -60,7 +60,7 @@ class Diary:
         """What a robot said in a stretch of time."""
         return [
             statuses[robot]
-            for record, statuses in zip(self.ethers, self.statuses, strict=True)
+            for record, statuses in zip(self.records, self.statuses, strict=True)
             if begin_s * SECOND <= record.time_ns < end_s * SECOND
         ]
 
@@ -126,7 +126,7 @@ def test_the_normal_discovery_leads_a_follower_when_nobody_passes_requests_on(
 
 def costs(diary: Diary) -> tuple[int, float]:
     """Bytes of routing packets, and the median time of a Next on a hop without discovery [ms]."""
-    counted = diary.ethers[-1].control_bytes
+    counted = diary.records[-1].control_bytes
     arrived = [v for v in diary.nexts(0, 1000) if v.status is DeliveryStatus.DELIVERED]
     on_a_hop = [
         (v.arrival_ns - v.service_start_ns - v.discovery_ns) / (len(v.path) - 1) for v in arrived

@@ -175,7 +175,7 @@ def test_a_request_learns_a_newer_number_on_its_way() -> None:
 
 
 def test_the_ring_grows_and_then_the_whole_net_is_asked() -> None:
-    """6.4 and section 10: TTL 1, 3, 5, 7, then NET_DIAMETER three times with doubled patience."""
+    """6.4 and section 10: TTL 1, 3, 5, 7, then NET_DIAMETER three times with doubled timeout."""
     net = Net("mrdv", [1], [])
     net.submit(1, 2)
     net.run(LONG)
@@ -196,7 +196,7 @@ def test_a_known_distance_widens_the_first_ring() -> None:
 
 
 def test_messages_wait_for_the_route_and_keep_their_order() -> None:
-    """6.3: buffering while searching."""
+    """6.3: buffering during discovery."""
     net = chain("mrdv", 3)
     offered = [net.submit(1, 3) for _ in range(5)]
     net.run(1_000 * MS)
@@ -304,7 +304,7 @@ def test_data_without_a_route_is_answered_with_an_error() -> None:
     assert [status for _, status in net.lost] == [DeliveryStatus.NO_ROUTE]
 
 
-def test_the_origin_searches_once_more_when_its_link_breaks() -> None:
+def test_the_source_discovers_once_more_when_its_link_breaks() -> None:
     net = Net("mrdv", [1, 2, 3], [(1, 3), (1, 2), (2, 3)])
     net.submit(1, 3)
     net.run(100 * MS)

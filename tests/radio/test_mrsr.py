@@ -142,7 +142,7 @@ def test_an_overheard_reply_teaches_the_way_to_everyone_on_it() -> None:
 
 
 def test_an_overheard_reply_sends_what_waits_for_its_way() -> None:
-    """8.2.6: a route that comes by chance ends a search as well."""
+    """8.2.6: a route that comes by chance ends a discovery as well."""
     net = Net("mrsr", [1, 2, 4, 9], [(1, 2), (2, 4)])
     message = net.submit(1, 4)
     router(net, 1).on_overheard(Rrep(7, (9, 2, 4), (2, 9)), 2, 0)
@@ -158,8 +158,8 @@ def test_an_overheard_error_is_heeded() -> None:
     assert router(net, 1).cache.paths() == ((1, 2), (1, 2, 3))
 
 
-def test_the_patience_with_a_request_counts_from_when_it_is_sent() -> None:
-    """3.3.3: one that waited in the card is no reason to ask the whole net."""
+def test_the_timeout_of_a_request_counts_from_when_it_is_sent() -> None:
+    """3.3.3: one that waited in the queue is no reason to ask the whole network."""
     net = Net("mrsr", [1], [])
     net.hold_ns = 40 * MS
     net.submit(1, 2)
@@ -328,7 +328,7 @@ def test_origin_and_target_are_exempt_from_the_probability() -> None:
     assert len(net.delivered) == 1
 
 
-def test_the_origin_searches_once_more_when_its_link_breaks() -> None:
+def test_the_source_discovers_once_more_when_its_link_breaks() -> None:
     net = Net("mrsr", [1, 2, 3], [(1, 3), (1, 2), (2, 3)])
     net.submit(1, 3)
     net.run(100 * MS)

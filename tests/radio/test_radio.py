@@ -89,7 +89,7 @@ def test_frames_to_a_robot_that_left_end_in_receiver_gone() -> None:
     assert verdict.status is DeliveryStatus.RECEIVER_GONE
 
 
-def test_a_restarted_robot_starts_with_an_empty_card() -> None:
+def test_a_restarted_robot_starts_with_an_empty_queue() -> None:
     mission = Mission(line(2, 5.0), STILL)
     mission.step({1: tuple(message(2) for _ in range(9))})
     mission.incarnations[1] = 1
@@ -105,7 +105,7 @@ def test_a_full_queue_drops_the_newest() -> None:
 
 
 def test_robots_that_speak_in_the_same_tick_do_not_always_collide() -> None:
-    """Ticks put hand-overs into one instant; the cards spread them by a backoff."""
+    """Ticks put hand-overs into one instant; the DCF spreads them by a backoff."""
     attempts = [
         sum(v.attempts)
         for seed in range(20)

@@ -23,11 +23,11 @@ ROBOTS = 6
 robots = st.integers(1, ROBOTS)
 PAIRS = [(a, b) for a in range(1, ROBOTS + 1) for b in range(a + 1, ROBOTS + 1)]
 QUIET_NS = 90_000 * MS
-"""Longer than any search, timer or buffer lasts."""
+"""Longer than any discovery, timer or buffer lasts."""
 
 
 class RoutingMachine(RuleBasedStateMachine):
-    """Robots offer messages while links come and go; what must hold is in the invariants."""
+    """Robots submit messages while links come and go; what must hold is in the invariants."""
 
     protocol = ""
 
@@ -44,7 +44,7 @@ class RoutingMachine(RuleBasedStateMachine):
         raise NotImplementedError
 
     @rule(source=robots, destination=robots, count=st.integers(1, 4))
-    def offer(self, source: int, destination: int, count: int) -> None:
+    def submit(self, source: int, destination: int, count: int) -> None:
         if source in self.net.nics and source != destination:
             for _ in range(count):
                 self.net.submit(source, destination)
@@ -54,7 +54,7 @@ class RoutingMachine(RuleBasedStateMachine):
     def everybody_talks(self, seed: int) -> None:
         dice = random.Random(seed)
         for source in sorted(self.net.nics):
-            self.offer(source, dice.randint(1, ROBOTS), 1)
+            self.submit(source, dice.randint(1, ROBOTS), 1)
 
     @rule(duration=st.sampled_from([1, 3, 8, 40, 300, 300, 2500, 16000]))
     def wait(self, duration: int) -> None:

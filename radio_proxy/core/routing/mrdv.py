@@ -197,7 +197,7 @@ class MrdvRouter:
             normal=discovery.ttl > TTL_THRESHOLD,
             destination_only=now < self._reboot_hold_until,
         )
-        self._is_new(request, now)
+        self._remember(request, now)
         self._nic.send(request, BROADCAST, RREQ_BYTES, "rreq", now)
         if discovery.ttl > TTL_THRESHOLD:
             timeout = NET_TRAVERSAL_NS << discovery.network_wide
@@ -237,8 +237,8 @@ class MrdvRouter:
 
     # Requests, replies and errors of others.
 
-    def _is_new(self, request: Rreq, now: int) -> bool:
-        """Whether a request is seen for the first time in PATH_DISCOVERY_TIME (RFC 3561, 6.5)."""
+    def _remember(self, request: Rreq, now: int) -> bool:
+        """Note a request; whether it is a new one within PATH_DISCOVERY_TIME (RFC 3561, 6.5)."""
         while self._seen and next(iter(self._seen.values())) <= now:
             del self._seen[next(iter(self._seen))]
         key = (request.origin, request.number)
@@ -251,7 +251,7 @@ class MrdvRouter:
         if request.origin == self._me or self._blacklist.get(sender, now) > now:
             return
         self.table.update_neighbour(sender, now)
-        if not self._is_new(request, now):
+        if not self._remember(request, now):
             return
         hops = request.hops + 1
         lifetime = 2 * NET_TRAVERSAL_NS - 2 * hops * NODE_TRAVERSAL_NS

@@ -118,7 +118,7 @@ class RouteTable:
     def apply_rerr(
         self, neighbour: RobotId, lost: tuple[tuple[RobotId, int], ...], now: int
     ) -> list[Route]:
-        """A neighbour reports (destination, sequence) that it lost: routes through it are invalid (6.11)."""
+        """A neighbour lost (destination, sequence): routes to these through it become invalid (6.11)."""
         numbers = dict(lost)
         broken = [route for route in self._through(neighbour, now) if route.destination in numbers]
         for route in broken:
