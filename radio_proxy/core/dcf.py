@@ -57,7 +57,7 @@ class Exchange:
 
 
 class Dcf:
-    """All stations of a mission on one medium."""
+    """All stations of a mission on one medium. events: theirs, and the timers of the layers above."""
 
     def __init__(
         self,
@@ -65,7 +65,6 @@ class Dcf:
         timing: Timing,
         medium: Medium,
         draws: Draws,
-        events: EventQueue,
         listener: Listener,
         *,
         retry_limit: int,
@@ -84,12 +83,8 @@ class Dcf:
         self._take_shortcuts = take_shortcuts
         self._stations = [Station(StationIndex(i)) for i in range(count)]
         self._contention = Contention(timing, medium, draws)
-        self._events = events
-        self._at = events.at
-
-    def run(self, until: int) -> None:
-        """Everything that happens up to and including `until` [ns]."""
-        self._events.run(until, self._contention, self._on_access)
+        self.events = EventQueue(self._contention, self._on_access)
+        self._at = self.events.at
 
     def enqueue(self, index: StationIndex, frame: Frame, now: int, force_backoff: bool) -> bool:
         """Give a station a frame to send; False when its queue is full.
@@ -166,7 +161,7 @@ class Dcf:
         """Whether nobody can interfere with the exchange, and the receiver may respond (NAV)."""
         propagation, receiver = self.medium.propagation, exchange.receiver.index
         return (
-            end <= self._events.horizon
+            end <= self.events.horizon
             and propagation.is_sensed_by_all(exchange.sender.index)
             and propagation.is_sensed_by_all(receiver)
             and self.medium.reserved_until(receiver, now) <= now

@@ -23,10 +23,15 @@ class ChannelAccess(Protocol):
 
 
 class EventQueue:
-    """Events to come. horizon: up to when the current run goes; no fault or pose changes before [ns]."""
+    """Events to come. horizon: up to when the current run goes; no fault or pose changes before [ns].
 
-    def __init__(self) -> None:
+    on_access: called with the time when a station of `access` is to transmit [ns].
+    """
+
+    def __init__(self, access: ChannelAccess, on_access: Callable[[int], None]) -> None:
         self.horizon = 0
+        self._access = access
+        self._on_access = on_access
         self._events: list[tuple[int, int, Callback, Any]] = []
         self._sequence = 0
 
@@ -35,16 +40,16 @@ class EventQueue:
         self._sequence += 1
         heapq.heappush(self._events, (time_ns, self._sequence, event, argument))
 
-    def run(self, until: int, access: ChannelAccess, on_access: Callable[[int], None]) -> None:
+    def run(self, until: int) -> None:
         """Everything that happens up to and including `until` [ns]."""
         self.horizon = until
-        events = self._events
+        events, access = self._events, self._access
         while True:
             time_ns = events[0][0] if events else NEVER
             if access.next_access < time_ns:
                 if access.next_access > until:
                     return
-                on_access(access.next_access)
+                self._on_access(access.next_access)
             else:
                 if time_ns > until:
                     return

@@ -17,7 +17,6 @@ from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.error_rates import bit_error_rate
-from radio_proxy.core.event_queue import EventQueue
 from radio_proxy.core.medium import Emission, Medium
 from radio_proxy.core.propagation import OWN_DB, Propagation
 from radio_proxy.core.routing.interface import Router
@@ -27,7 +26,7 @@ class LinkLayer:
     """The links of a mission. robots: sorted ids, in the order of their stations.
 
     force_backoff: frames that are sent now draw a backoff even if the medium is idle. control_bytes:
-    what routing has cost so far, by kind [B].
+    what routing has cost so far, by kind [B]. events: of the DCF, for the timers of routing too.
     """
 
     def __init__(
@@ -36,7 +35,6 @@ class LinkLayer:
         section: RadioSection,
         propagation: Propagation,
         draws: Draws,
-        events: EventQueue,
         deliveries: Deliveries,
     ) -> None:
         self.force_backoff = False
@@ -53,17 +51,13 @@ class LinkLayer:
             self._timing,
             self._medium,
             draws,
-            events,
             self,
             retry_limit=section.retry_limit,
             queue_frames=section.queue_frames,
             rts_threshold_bytes=section.rts_threshold_bytes,
             fade_per_exchange=section.fading == "exchange",
         )
-
-    def run(self, until: int) -> None:
-        """Everything that happens up to and including `until` [ns]."""
-        self._dcf.run(until)
+        self.events = self._dcf.events
 
     def attach(self, robot: RobotId, router: Router) -> None:
         """A robot's NIC comes up, with this routing protocol."""

@@ -19,7 +19,6 @@ from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
-from radio_proxy.core.event_queue import EventQueue
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.link_layer import LinkLayer
 from radio_proxy.core.nic import Nic
@@ -40,11 +39,9 @@ class Radio:
         self._section = section
         self._draws = Draws(generator(briefing.seed, "radio"))
         self._propagation = Propagation(link_budget(section), robots, briefing.walls)
-        self._events = EventQueue()
         self._deliveries = Deliveries()
-        self._link = LinkLayer(
-            robots, section, self._propagation, self._draws, self._events, self._deliveries
-        )
+        self._link = LinkLayer(robots, section, self._propagation, self._draws, self._deliveries)
+        self._events = self._link.events
         self._nics: dict[RobotId, tuple[Nic, Router]] = {}
         self._incarnations: tuple[tuple[int, int], ...] = ()
         self._requests: tuple[TransmitRequest, ...] = ()
@@ -63,7 +60,7 @@ class Radio:
             for transmission in request.outbox:
                 self._submit(RobotId(request.robot), transmission, start)
         self._link.force_backoff = False
-        self._link.run(truth.time_ns)
+        self._events.run(truth.time_ns)
         tick, time_ns = truth.tick, truth.time_ns
         inboxes, verdicts = self._deliveries.collect(tick, time_ns, truth.present)
         if self._link.control_bytes != self._control_bytes:

@@ -11,7 +11,6 @@ from radio_proxy.core.airtime import Timing
 from radio_proxy.core.contention import Frame
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
-from radio_proxy.core.event_queue import EventQueue
 from radio_proxy.core.link_budget import LinkBudget
 from radio_proxy.core.medium import Emission, Medium
 from radio_proxy.core.propagation import Propagation
@@ -79,7 +78,6 @@ class Saturation:
             timing,
             Medium(propagation, draws),
             draws,
-            EventQueue(),
             self,
             retry_limit=retry_limit,
             queue_frames=2,
@@ -92,7 +90,7 @@ class Saturation:
 
     def run(self, seconds: float) -> Tally:
         """The tally after so much simulated time."""
-        self._dcf.run(math.floor(seconds * SECOND))
+        self._dcf.events.run(math.floor(seconds * SECOND))
         return self.tally
 
     def _refill(self, sender: StationIndex, now: int) -> None:

@@ -10,7 +10,6 @@ from radio_proxy.core.airtime import Timing, dsss
 from radio_proxy.core.contention import Frame
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
-from radio_proxy.core.event_queue import EventQueue
 from radio_proxy.core.link_budget import LinkBudget, link_budget
 from radio_proxy.core.medium import Emission, Medium
 from radio_proxy.core.propagation import Propagation
@@ -55,13 +54,11 @@ class Cell:
         ]
         propagation.update(tuple(presences), cuts, ())
         draws = Draws(generator(1, "radio"))
-        self.events = EventQueue()
         self.dcf = Dcf(
             len(robots),
             dsss(section),
             Medium(propagation, draws),
             draws,
-            self.events,
             self,
             retry_limit=section.retry_limit,
             queue_frames=section.queue_frames,
@@ -80,11 +77,11 @@ class Cell:
         def hand_over(_: object, now: int) -> None:
             self.dcf.enqueue(sender, frame, now, False)
 
-        self.events.at(round(time_us * 1000), hand_over, None)
+        self.dcf.events.at(round(time_us * 1000), hand_over, None)
         return frame
 
     def run(self, until_us: float) -> None:
-        self.dcf.run(round(until_us * 1000))
+        self.dcf.events.run(round(until_us * 1000))
 
     def on_service(self, sender: int, frame: Frame, now: int) -> None:
         """Nothing to note."""
