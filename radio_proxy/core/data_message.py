@@ -49,15 +49,9 @@ class DataMessage:
         return -1 if self.first_service < 0 else self.first_service - self.discovery_time_before_service
 
     def begin_service(self, now: int) -> None:
-        """A link layer takes it up; the first to do so is that of its source."""
-        if self.first_service < 0:
-            self.first_service = now
-            self.discovery_time_before_service = self.discovery_time
-
-    def note_link(self, sinr_db: float, bit_error_rate: float) -> None:
-        """What the last attempt of its last hop met."""
-        self.sinr_db = sinr_db
-        self.bit_error_rate = bit_error_rate
+        """The link layer of its source takes it up for the first time."""
+        self.first_service = now
+        self.discovery_time_before_service = self.discovery_time
 
     def begin_discovery(self, now: int) -> None:
         """Its source has no route for it and looks for one."""

@@ -4,26 +4,32 @@ An acknowledgement that is lost leaves a copy of a message with two robots. A me
 the first copy that arrives, and lost when its last copy is given up.
 """
 
-from collections.abc import Sequence
-
-from onehop.contracts.messages import DeliveryStatus, Inbox, Presence, Reception, Verdict
+from onehop.contracts.messages import (
+    Carriage,
+    DeliveryStatus,
+    Inbox,
+    RadioRecord,
+    Reception,
+    Truth,
+    Verdict,
+)
 from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import DataMessage, DataPacket
 
 
 class Deliveries:
-    """Verdicts and receptions of a tick. present: robots whose NICs are up, sorted."""
+    """Verdicts and receptions since the last tick. present: robots whose NICs are up, sorted."""
 
     def __init__(self) -> None:
         self.present: tuple[RobotId, ...] = ()
         self._verdicts: list[Verdict] = []
         self._receptions: list[tuple[int, int, int, RobotId, Reception]] = []
+        self._control_bytes: dict[str, int] = {}
 
-    def collect(
-        self, tick: int, time_ns: int, presences: Sequence[Presence]
-    ) -> tuple[dict[int, Inbox], tuple[Verdict, ...]]:
-        """Inboxes of all present robots and all verdicts since the last call."""
-        inboxes = {presence.robot: Inbox(tick, time_ns, ()) for presence in presences}
+    def carriage(self, truth: Truth, control_bytes: dict[str, int]) -> Carriage:
+        """What the radio says at the end of a tick; control_bytes: what routing has cost so far [B]."""
+        tick, time_ns = truth.tick, truth.time_ns
+        inboxes = {presence.robot: Inbox(tick, time_ns, ()) for presence in truth.present}
         if self._receptions:
             self._receptions.sort(key=lambda reception: reception[:4])
             received: dict[RobotId, list[Reception]] = {}
@@ -34,7 +40,9 @@ class Deliveries:
                 inboxes[robot] = Inbox(tick, time_ns, tuple(received[robot]))
         verdicts = tuple(self._verdicts)
         self._verdicts = []
-        return inboxes, verdicts
+        if control_bytes != self._control_bytes:
+            self._control_bytes = dict(sorted(control_bytes.items()))
+        return Carriage(inboxes, RadioRecord(tick, time_ns, verdicts, self._control_bytes))
 
     def deliver(self, data: DataPacket, now: int) -> None:
         """A copy reached its destination; a second one is dropped."""
@@ -90,5 +98,4 @@ class Deliveries:
                 bit_error_rate=message.bit_error_rate,
                 msdu_bytes=message.msdu_bytes,
             )
-            order = (arrival, message.source, message.number, receiver)
-            self._receptions.append((*order, reception))
+            self._receptions.append((arrival, message.source, message.number, receiver, reception))

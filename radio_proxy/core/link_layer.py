@@ -90,8 +90,9 @@ class LinkLayer:
     # What the DCF reports.
 
     def on_service(self, sender: StationIndex, frame: Frame, now: int) -> None:  # noqa: ARG002
-        if isinstance(frame.packet, DataPacket):
-            frame.packet.message.begin_service(now)
+        packet = frame.packet
+        if isinstance(packet, DataPacket) and packet.message.first_service < 0:
+            packet.message.begin_service(now)
 
     def on_received(self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int) -> None:
         packet = frame.packet
@@ -150,7 +151,8 @@ class LinkLayer:
                 continue
             cause, sinr_db = self._medium.receive(emission, self._index[robot], rate_mbps, bits)
             if isinstance(packet, DataPacket):
-                packet.message.note_link(sinr_db, bit_error_rate(rate_mbps, sinr_db))
+                packet.message.sinr_db = sinr_db
+                packet.message.bit_error_rate = bit_error_rate(rate_mbps, sinr_db)
                 copy = packet.tried(1) if cause else packet.moved(robot, 1)
                 status = cause or DeliveryStatus.DELIVERED
                 self._deliveries.record(copy, robot, status, -1 if cause else now)
@@ -158,5 +160,5 @@ class LinkLayer:
                 router.on_packet(packet, source, now)
 
     def _note_link(self, data: DataPacket, frame: Frame) -> None:
-        rate_mbps = self._timing.rate_mbps
-        data.message.note_link(frame.sinr_db, bit_error_rate(rate_mbps, frame.sinr_db))
+        data.message.sinr_db = frame.sinr_db
+        data.message.bit_error_rate = bit_error_rate(self._timing.rate_mbps, frame.sinr_db)

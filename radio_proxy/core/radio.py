@@ -8,7 +8,6 @@ from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.messages import (
     Carriage,
     DeliveryStatus,
-    RadioRecord,
     Transmission,
     TransmitRequest,
     Truth,
@@ -46,7 +45,6 @@ class Radio:
         self._incarnations: tuple[tuple[int, int], ...] = ()
         self._requests: tuple[TransmitRequest, ...] = ()
         self._numbers = dict.fromkeys(robots, 0)
-        self._control_bytes: dict[str, int] = {}
 
     def carry(self, truth: Truth) -> Carriage:
         """What reaches whom in the tick that ends at truth.time_ns, and what became of the rest."""
@@ -55,17 +53,10 @@ class Radio:
         self._propagation.update(truth.present, truth.cuts, truth.jams)
         self._requests = truth.transmit_requests
         talking = [request for request in truth.transmit_requests if request.outbox]
-        self._link.force_backoff = len(talking) > 1
-        for request in talking:
-            for transmission in request.outbox:
-                self._submit(RobotId(request.robot), transmission, start)
-        self._link.force_backoff = False
+        if talking:
+            self._submit_all(talking, start)
         self._events.run(truth.time_ns)
-        tick, time_ns = truth.tick, truth.time_ns
-        inboxes, verdicts = self._deliveries.collect(tick, time_ns, truth.present)
-        if self._link.control_bytes != self._control_bytes:
-            self._control_bytes = dict(sorted(self._link.control_bytes.items()))
-        return Carriage(inboxes, RadioRecord(tick, time_ns, verdicts, self._control_bytes))
+        return self._deliveries.carriage(truth, self._link.control_bytes)
 
     def _update_nics(self, truth: Truth, now: int) -> None:
         """NICs of robots that left (or came back as another process) go down; new ones start empty."""
@@ -102,6 +93,15 @@ class Radio:
             if request.robot == robot:
                 return request
         return TransmitRequest(robot, 0.0, 0.0, ())
+
+    def _submit_all(self, requests: list[TransmitRequest], now: int) -> None:
+        """Take over what the robots send in this tick; of several, each frame draws a backoff."""
+        self._link.force_backoff = len(requests) > 1
+        for request in requests:
+            robot = RobotId(request.robot)
+            for transmission in request.outbox:
+                self._submit(robot, transmission, now)
+        self._link.force_backoff = False
 
     def _submit(self, robot: RobotId, transmission: Transmission, now: int) -> None:
         """A robot hands a message to its NIC."""
