@@ -16,7 +16,7 @@ from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import DeliveryStatus, Presence, Transmission, TransmitRequest, Truth
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.radio import Radio
 from radio_proxy.core.saturation import Saturation, ring
 
@@ -46,17 +46,17 @@ class Mission:
         self.tick = 0
         self.seconds: list[float] = []
         self.delivered = 0
-        self.heard: dict[int, int] = {}
+        self.received: dict[int, int] = {}
 
     def step(self, outboxes: Outboxes) -> None:
-        offers = tuple(TransmitRequest(i, 1.0, 50.0, outboxes.get(i, ())) for i in self.robots)
-        truth = Truth(self.tick, self.tick * PERIOD, self.present, offers, (), (), (), ())
+        requests = tuple(TransmitRequest(i, 1.0, 50.0, outboxes.get(i, ())) for i in self.robots)
+        truth = Truth(self.tick, self.tick * PERIOD, self.present, requests, (), (), (), ())
         begin = time.process_time()
         carriage = self.radio.carry(truth)
         self.seconds.append(time.process_time() - begin)
         self.tick += 1
         self.delivered += sum(v.status is DeliveryStatus.DELIVERED for v in carriage.record.verdicts)
-        self.heard = {i: len(inbox.receptions) for i, inbox in carriage.inboxes.items()}
+        self.received = {i: len(inbox.receptions) for i, inbox in carriage.inboxes.items()}
 
     def figures(self) -> dict[str, float]:
         ordered = sorted(self.seconds)
@@ -79,7 +79,7 @@ def loop_ns() -> float:
 
 
 def idle(robots: int) -> dict[str, float]:
-    """Microseconds of a tick in which nothing is on the air; the best of five runs."""
+    """Microseconds of a tick in which nobody transmits; the best of five runs."""
     mission = Mission(robots, 3.0, RadioSection())
     truth = Truth(0, 0, mission.present, (), (), (), (), ())
     best = float("inf")
@@ -121,7 +121,7 @@ def team(robots: int, routing: str, spacing: float, seconds: int) -> dict[str, o
         if tick % 40 == 0:
             outboxes[leader] = tuple(Transmission(i, b"", 800) for i in followers)
         mission.step(outboxes)
-        outboxes = {i: (Transmission(leader, b"", 60),) for i in followers if mission.heard[i]}
+        outboxes = {i: (Transmission(leader, b"", 60),) for i in followers if mission.received[i]}
     return {"robots": robots, "routing": routing, "spacing_m": spacing, **mission.figures()}
 
 

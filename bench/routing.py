@@ -60,20 +60,20 @@ MISSIONS: dict[str, tuple[str, ...]] = {
 
 def mission(scenario: str, settings: tuple[str, ...], routing: str, seed: int) -> dict[str, float]:
     """Run one and take its measures."""
-    ethers: list[RadioRecord] = []
+    records: list[RadioRecord] = []
     journal = Journal(
-        lambda _, record: ethers.append(decode(RadioRecord, dict(record)[topics.RADIO_RECORD]))
+        lambda _, record: records.append(decode(RadioRecord, dict(record)[topics.RADIO_RECORD]))
     )
     every = [f"seed={seed}", "clock.limit_s=120", f'radio.routing="{routing}"', *settings]
     inline.run(scenario_file.load(SCENARIOS / scenario, every), journal)
     nexts = [
-        verdict for record in ethers for verdict in record.verdicts if verdict.msdu_bytes == NEXT_BYTES
+        verdict for record in records for verdict in record.verdicts if verdict.msdu_bytes == NEXT_BYTES
     ]
     arrived = [verdict for verdict in nexts if verdict.status is DeliveryStatus.DELIVERED]
     hops = [len(verdict.path) - 1 for verdict in arrived]
     taken = [verdict.arrival_ns - verdict.service_start_ns for verdict in arrived]
     moving = [time - verdict.discovery_ns for time, verdict in zip(taken, arrived, strict=True)]
-    counted = ethers[-1].control_bytes
+    counted = records[-1].control_bytes
     total = sum(counted.values())
     return {
         "routing_bytes": total - counted.get("source_route", 0),

@@ -1,4 +1,4 @@
-"""The shell of the radio: hear the truth of a tick, carry what was offered, put all inboxes."""
+"""The shell of the radio: receive the truth of a tick, carry its messages, put all inboxes."""
 
 from onehop.contracts import topics
 from onehop.contracts.briefings import RadioBriefing

@@ -19,25 +19,6 @@ ALLOWED = [
     ("elementary", ANY, ANY, "the place where such results are rounded until all libraries agree"),
     ("closed_forms", ANY, ANY, "formulas for tables and tests; no mission imports them"),
     ("tangent_bug", ANY, ANY, "the baseline of a benchmark; no mission imports it"),
-    ("error_rates", "thesis_ber", ANY, "printed by `onehop link` and used for nothing else"),
-    (
-        "error_rates",
-        "frame_success",
-        "math.exp(bits * math.log1p(-bit_error_rate(rate_mbps, sinr_db)))",
-        "a probability that is only compared with a draw",
-    ),
-    (
-        "error_rates",
-        "frame_success",
-        "math.log1p(-bit_error_rate(rate_mbps, sinr_db))",
-        "a probability that is only compared with a draw",
-    ),
-    (
-        "forwarding",
-        "forwarding_probability",
-        "speed**-weight",
-        "a probability that is only compared with a draw",
-    ),
     (
         "draws",
         "normal",

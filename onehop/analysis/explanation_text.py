@@ -10,15 +10,17 @@ from onehop.analysis.readable import content_of
 from onehop.contracts.messages import DeliveryStatus
 
 WHY_LOST = {
-    DeliveryStatus.BELOW_THRESHOLD: "the signal was too weak, or a jammer drowned it",
+    DeliveryStatus.BELOW_THRESHOLD: "the signal was too weak: distance, a wall, a cut link or a jammer",
     DeliveryStatus.BIT_ERRORS: "received, but with bit errors",
-    DeliveryStatus.RETRY_LIMIT: "every attempt failed",
-    DeliveryStatus.NO_ROUTE: "no way through the team was found",
-    DeliveryStatus.QUEUE_FULL: "the sender's queue was full",
-    DeliveryStatus.RECEIVER_GONE: "the receiver is not there any more",
-    DeliveryStatus.SENDER_GONE: "the sender died while it was waiting to be sent",
+    DeliveryStatus.COLLISION: "another frame was sent at the same time and drowned it",
+    DeliveryStatus.RECEIVER_BUSY: "the receiver stayed silent, others had reserved the channel (NAV)",
+    DeliveryStatus.NO_ROUTE: "no route through the team was found",
+    DeliveryStatus.QUEUE_FULL: "the queue of the robot that was to send it was full",
+    DeliveryStatus.RECEIVER_GONE: "the receiver has left the mission",
+    DeliveryStatus.RELAY_GONE: "a robot that was to pass it on has left the mission",
+    DeliveryStatus.SENDER_GONE: "the sender left the mission before it was sent",
 }
-"""What each fate of a lost message means, in plain words."""
+"""What each delivery status of a lost message means, in plain words."""
 
 
 def tell(one: Explanation) -> Iterator[str]:

@@ -187,15 +187,25 @@ class Truth(Wire, frozen=True):
 
 
 class DeliveryStatus(StrEnum):
-    """What became of a data message."""
+    """What became of a data message; of a lost one, why its last attempt on its last hop failed.
+
+    BELOW_THRESHOLD: too weak at the receiver (distance, wall, cut, jam), also without other frames.
+    COLLISION: strong enough, had no other frame overlapped it; what the receiver itself sent counts.
+    RECEIVER_BUSY: an RTS reached a station that had to stay silent, because others reserved the medium.
+    NO_ROUTE, QUEUE_FULL: at the robot that held it. RECEIVER_GONE: its destination is not in the mission
+    any more, or came back as another process, whatever else failed. RELAY_GONE: the same of a robot on
+    its way, which held it or was to take it next; SENDER_GONE: of its source, which still held it.
+    """
 
     DELIVERED = "delivered"
     BELOW_THRESHOLD = "below threshold"
     BIT_ERRORS = "bit errors"
-    RETRY_LIMIT = "retry limit"
+    COLLISION = "collision"
+    RECEIVER_BUSY = "receiver busy"
     NO_ROUTE = "no route"
     QUEUE_FULL = "queue full"
     RECEIVER_GONE = "receiver gone"
+    RELAY_GONE = "relay gone"
     SENDER_GONE = "sender gone"
 
 

@@ -20,7 +20,7 @@ US = 1000
 class Timing:
     """Times [ns], sizes [B] and rates [Mb/s] of one kind of DCF; windows in slots.
 
-    answer_timeout: from the end of a frame until its sender gives its answer up.
+    response_timeout: CTSTimeout and ACKTimeout, from the end of a frame (802.11-1999, 9.2.5.7, 9.2.8).
     turnaround: a carrier that begins this short before a station's own slot is not sensed in time
         (802.11-1999, 9.2.10, aRxTxTurnaroundTime).
     """
@@ -32,7 +32,7 @@ class Timing:
     rts: int
     cts: int
     ack: int
-    answer_timeout: int
+    response_timeout: int
     mac_header_bytes: int
     rate_mbps: float
     basic_rate_mbps: float = ideal_link.BASIC_RATE_MBPS
@@ -63,7 +63,7 @@ def dsss(section: RadioSection) -> Timing:
         rts=round(ideal_link.frame_us(ideal_link.RTS_BYTES, ideal_link.BASIC_RATE_MBPS) * US),
         cts=round(ideal_link.frame_us(ideal_link.ACK_BYTES, ideal_link.BASIC_RATE_MBPS) * US),
         ack=round(ideal_link.frame_us(ideal_link.ACK_BYTES, ideal_link.BASIC_RATE_MBPS) * US),
-        answer_timeout=round(section.cts_timeout_us * US),
+        response_timeout=round(section.cts_timeout_us * US),
         mac_header_bytes=section.mac_header_bytes,
         rate_mbps=section.rate_mbps,
     )

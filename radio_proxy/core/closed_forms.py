@@ -2,40 +2,41 @@
 
 G. Bianchi, "Performance analysis of the IEEE 802.11 distributed coordination function", IEEE JSAC 18(3),
 2000, eq. 7 to 17. The fading forms are sums over the attempts of one frame. The event simulation is held
-against them, and the tables of `onehop link` and `onehop saturate` show them beside it.
+against them, and the tables of `onehop link` and `onehop saturate` show them beside it. Nothing of a
+mission depends on them, so powers and exponentials are the C library's.
 """
 
 import math
 
 from radio_proxy.core.airtime import Timing
 from radio_proxy.core.error_rates import frame_success
-from radio_proxy.core.propagation import LinkBudget
+from radio_proxy.core.link_budget import LinkBudget
 
 
 def bianchi_tau(stations: int, window: int, stages: int) -> tuple[float, float]:
-    """Probabilities that a station speaks in a slot, and that it then collides (eq. 7 and 9).
+    """Probabilities that a station transmits in a slot, and that it then collides (eq. 7 and 9).
 
     window: W, the first window's size in slots. stages: m, how often it doubles.
     """
 
-    def speaks(p: float) -> float:
+    def transmits(p: float) -> float:
         doubled = sum((2.0 * p) ** i for i in range(stages))
         return 2.0 / (1.0 + window + p * window * doubled)
 
     low, high = 0.0, 1.0
     for _ in range(200):
         p = (low + high) / 2.0
-        if 1.0 - (1.0 - speaks(p)) ** (stations - 1) > p:
+        if 1.0 - (1.0 - transmits(p)) ** (stations - 1) > p:
             low = p
         else:
             high = p
-    return speaks(low), low
+    return transmits(low), low
 
 
 def bianchi_normalized(
-    stations: int, timing: Timing, msdu_bytes: int, rts_cts: bool, propagation: int = 0
+    stations: int, timing: Timing, msdu_bytes: int, rts_cts: bool, propagation_delay: int = 0
 ) -> float:
-    """Share of time that carries payload bits in one saturated cell (eq. 13). propagation [ns]."""
+    """Share of time that carries payload bits in one saturated cell (eq. 13). propagation_delay [ns]."""
     window = timing.cw_min + 1
     stages = round(math.log2((timing.cw_max + 1) / window))
     tau, _ = bianchi_tau(stations, window, stages)
@@ -43,11 +44,11 @@ def bianchi_normalized(
     one = stations * tau * (1.0 - tau) ** (stations - 1)
     payload = 8000.0 * msdu_bytes / timing.rate_mbps
     data = timing.data(msdu_bytes)
-    success = data + timing.sifs + timing.ack + timing.difs + 2 * propagation
-    collision = data + timing.difs + propagation
+    success = data + timing.sifs + timing.ack + timing.difs + 2 * propagation_delay
+    collision = data + timing.difs + propagation_delay
     if rts_cts:
-        success += timing.rts + timing.cts + 2 * timing.sifs + 2 * propagation
-        collision = timing.rts + timing.difs + propagation
+        success += timing.rts + timing.cts + 2 * timing.sifs + 2 * propagation_delay
+        collision = timing.rts + timing.difs + propagation_delay
     time = (1.0 - some) * timing.slot + one * success + (some - one) * collision
     return one * payload / time
 
@@ -70,7 +71,7 @@ def frame_probability(budget: LinkBudget, snr_db: float, rate_mbps: float, size_
 
 
 class SaturatedLink:
-    """One sender that always has a message, alone on the air, behind a lossy link."""
+    """One sender that always has a message, alone on the medium, over a lossy link."""
 
     def __init__(self, timing: Timing, msdu_bytes: int, retry_limit: int, rts_cts: bool = True) -> None:
         self._timing = timing
@@ -83,11 +84,11 @@ class SaturatedLink:
         return self._timing.window(failures) * self._timing.slot / 2000.0
 
     def _times_us(self) -> tuple[float, float, float]:
-        """Costs of an attempt: RTS unanswered, data unanswered, all of it [us]."""
+        """Costs of an attempt: RTS without CTS, data without ACK, all of it [us]."""
         t = self._timing
         before = t.rts + t.cts + 2 * t.sifs if self._rts_cts else 0
-        lost_rts = t.rts + t.answer_timeout
-        lost_data = before + self._data + t.answer_timeout
+        lost_rts = t.rts + t.response_timeout
+        lost_data = before + self._data + t.response_timeout
         whole = before + self._data + t.sifs + t.ack
         return lost_rts / 1000.0, lost_data / 1000.0, whole / 1000.0
 
@@ -113,11 +114,11 @@ class SaturatedLink:
         """Delivery ratio and throughput [Mb/s], with each frame's own probability to get through."""
         lost_rts, lost_data, whole = self._times_us()
         begun = rts * cts if self._rts_cts else 1.0
-        heard = begun * data
-        done = heard * ack
+        arrived = begun * data
+        done = arrived * ack
         spent = 0.0
         for i in range(self._limit):
             mean = (1.0 - begun) * lost_rts + (begun - done) * lost_data + done * whole
             spent += (1.0 - done) ** i * (self._timing.difs / 1000.0 + self._backoff_us(i) + mean)
-        ratio = 1.0 - (1.0 - heard) ** self._limit
+        ratio = 1.0 - (1.0 - arrived) ** self._limit
         return ratio, ratio * self._bits / spent

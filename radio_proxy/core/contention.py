@@ -1,7 +1,7 @@
-"""Who may speak when: carrier sense, inter-frame space and backoff that freezes (802.11-1999, 9.2.5).
+"""Who may transmit when: carrier sense, DIFS, and a backoff that freezes (802.11-1999, 9.2.5).
 
 Differs: a station that finds the medium idle waits a whole DIFS from that moment, because both measured
-references (ns-3's idle exchange of 7.542 ms, thesis eq. 3.16) count it. A frame handed over in the same
+references (ns-3's idle exchange of 7.542 ms, thesis eq. 3.16) count it. A frame enqueued in the same
 instant as another station's draws a backoff, because ticks would otherwise make them collide always.
 """
 
@@ -9,26 +9,23 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from onehop.contracts.messages import DeliveryStatus
+from radio_proxy.core.addresses import StationIndex
 from radio_proxy.core.airtime import Timing
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.medium import Emission, Medium
-
-EVERYONE = -1
-"""Receiver of a broadcast frame."""
-
-NEVER = 1 << 62
-"""A time that does not come [ns]."""
 
 
 @dataclass(slots=True, eq=False)
 class Frame:
-    """One MSDU for one hop. receiver: station index or EVERYONE; packet: opaque to this layer.
+    """One MSDU for one hop. receiver: a station or EVERYONE; packet: opaque to this layer.
 
-    service_start: when it became the head of its queue [ns]. sinr_db, cause: of the last frame of its
-    exchange that was judged at a receiver. urgent: a routing packet, served before data.
+    urgent: a routing packet, served before data. service_start: when it became the head of its queue
+    [ns]. received: its data has arrived, with or without an ACK. sinr_db, cause: of its last RTS, CTS,
+    data or ACK that was judged; cause is None if that one was received.
     """
 
-    receiver: int
+    receiver: StationIndex
     msdu_bytes: int
     packet: object
     urgent: bool = False
@@ -41,14 +38,15 @@ class Frame:
 
 @dataclass(slots=True, eq=False)
 class Station:
-    """A network card. urgent, queue: routing packets and data that wait, each first in, first out.
+    """A station. urgent, queue: routing packets and data that wait, each first in, first out.
 
-    slots: backoff left. access: when it will speak, NEVER while frozen [ns].
-    idle_start: from when its DIFS counts [ns]. fresh: its head found the medium idle, so it has drawn
-    no backoff yet. gone: its robot left; events that still name it are void.
+    frame: the one in service. slots: backoff left. access: when it will transmit, NEVER while frozen
+    [ns]. idle_start: from when its DIFS counts [ns]. contending: it waits for the medium. fresh: its
+    frame found the medium idle, so it has drawn no backoff. gone: its robot left the mission; events
+    that still name it are void.
     """
 
-    index: int
+    index: StationIndex
     urgent: deque[Frame] = field(default_factory=deque)
     queue: deque[Frame] = field(default_factory=deque)
     frame: Frame | None = None
@@ -61,7 +59,7 @@ class Station:
 
 
 class Contention:
-    """The stations that wait for the medium. next_station speaks at next_access unless it freezes."""
+    """The stations that wait for the medium; next_station transmits at next_access unless it freezes."""
 
     def __init__(self, timing: Timing, medium: Medium, draws: Draws) -> None:
         self.next_access = NEVER
@@ -69,14 +67,14 @@ class Contention:
         self._timing = timing
         self._medium = medium
         self._draws = draws
-        self._sense_db = medium.field.budget.carrier_sense_db
+        self._sense_db = medium.propagation.budget.carrier_sense_db
         self._difs, self._slot = timing.difs, timing.slot
         self._waiting: list[Station] = []
 
-    def join_with_frame(self, station: Station, now: int, hold_back: bool) -> None:
-        """A new head of a queue: at once after DIFS if the medium is idle, else after a backoff."""
+    def join_with_frame(self, station: Station, now: int, force_backoff: bool) -> None:
+        """A frame comes into service: after DIFS if the medium is idle, else after a backoff as well."""
         medium, index = self._medium, station.index
-        if hold_back or medium.is_busy(index) or medium.reserved_until(index, now) > now:
+        if force_backoff or medium.is_busy(index) or medium.reserved_until(index, now) > now:
             self.join(station, 0, now)
         else:
             station.slots = 0
@@ -89,7 +87,7 @@ class Contention:
         self._enter(station, now)
 
     def take_next(self) -> Station:
-        """The station whose wait is over; on_busy or on_silence must follow."""
+        """The station whose wait is over; on_busy or find_next must follow."""
         station = self.next_station
         assert station is not None
         self._drop(station)
@@ -98,10 +96,10 @@ class Contention:
     def leave(self, station: Station) -> None:
         """The station left the mission."""
         self._drop(station)
-        self.on_silence()
+        self.find_next()
 
-    def on_silence(self) -> None:
-        """Nobody spoke: find who speaks next."""
+    def find_next(self) -> None:
+        """Find who transmits next, after somebody stopped waiting."""
         self.next_access, self.next_station = NEVER, None
         for station in self._waiting:
             if station.access < self.next_access:
@@ -110,7 +108,7 @@ class Contention:
     def on_busy(self, emission: Emission, now: int) -> None:
         """An emission begins: who senses it keeps the slots that have not passed (9.2.5.2).
 
-        A station about to speak within its turnaround cannot sense it in time and collides.
+        A station that is to transmit within its turnaround time cannot sense it any more and collides.
         """
         if self.next_station is None:
             return
@@ -127,27 +125,28 @@ class Contention:
                 next_access, next_station = access, station
         self.next_access, self.next_station = next_access, next_station
 
-    def on_idle(self, now: int, answer: list[float] | None = None) -> None:
+    def on_idle(self, now: int, response: list[float] | None = None) -> None:
         """An emission has ended; whoever now finds the medium idle goes on.
 
-        answer: how an answer that follows after a SIFS will be heard; who senses it does not even start.
+        response: mean SNR at every station of a CTS, data or ACK that follows after a SIFS [dB]; who
+        senses it does not even start, for SIFS is shorter than DIFS.
         """
         medium, sense_db = self._medium, self._sense_db
-        if answer is None and not medium.on_air and medium.reserved_to <= now:
+        if response is None and not medium.emissions and medium.reserved_to <= now:
             self._resume_all(now)
             return
         for station in self._waiting:
-            if station.access != NEVER or (answer is not None and answer[station.index] >= sense_db):
+            if station.access != NEVER or (response is not None and response[station.index] >= sense_db):
                 continue
             if not medium.is_busy(station.index):
                 self._resume(station, now)
 
-    def on_reservation_unused(self, now: int) -> None:
-        """A reservation was forgotten: nobody waits for its end any more."""
+    def on_nav_reset(self, now: int) -> None:
+        """A reservation was cancelled: nobody waits for its end any more."""
         for station in self._waiting:
             if station.access != NEVER and station.idle_start > now:
                 self._resume(station, now)
-        self.on_silence()
+        self.find_next()
 
     def _drop(self, station: Station) -> None:
         station.contending = station.fresh = False

@@ -1,63 +1,72 @@
-"""A data message on its way from robot to robot, and what is on record about it until it is settled."""
+"""A data message on its way from robot to robot, and what is on record about it until its verdict."""
 
 from dataclasses import dataclass
 
 from onehop.contracts.messages import DeliveryStatus, Verdict
+from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.propagation import SILENT_DB
 
-SEARCHES = 2
-"""Discoveries that the origin makes for one message: at first, and once more when a hop failed."""
+MAX_DISCOVERIES = 2
+"""Route discoveries that the source makes for one message: at first, and once more when a hop failed."""
 
 
 @dataclass(slots=True, eq=False)
 class DataMessage:
     """One message of one robot. Times in ns, -1 until they are known.
 
-    copies: how many robots hold it (an acknowledgement that is lost leaves two). searching_since: start
-    of the discovery that it waits for; searches: how many there were. loss: the copy
-    that was given up last, and why.
+    offered: when its source handed it over. copies: how many robots hold it (an ACK that is lost leaves
+    two). loss: of the copies that were given up, the one that came farthest, and why.
+    first_service: when its source's link layer took it up. discovering_since: start of the route
+    discovery that it waits for; discoveries: how many there were; discovery_time: spent in them.
+    sinr_db, bit_error_rate: of the last attempt of its last hop.
     """
 
     number: int
-    source: int
-    destination: int
+    source: RobotId
+    destination: RobotId
     payload: bytes
     msdu_bytes: int
     offered: int
     copies: int = 1
-    settled: bool = False
+    has_verdict: bool = False
     loss: "tuple[DataPacket, DeliveryStatus] | None" = None
     first_service: int = -1
-    discovery: int = 0
-    discovery_before_service: int = 0
-    searching_since: int = -1
-    searches: int = 0
+    discovery_time: int = 0
+    discovery_time_before_service: int = 0
+    discovering_since: int = -1
+    discoveries: int = 0
     sinr_db: float = SILENT_DB
     bit_error_rate: float = 0.5
 
     @property
     def service_start(self) -> int:
-        """When the origin's link layer began to serve it, its discovery included [ns].
+        """When the source's link layer began to serve it, its discovery included [ns].
 
         The wait behind other messages lies between discovery and service; it is taken out by moving the
-        start, so that arrival - service_start is discovery and service alone (radio.md).
+        start, so that arrival - service_start is discovery and service alone: a follower measures its
+        throughput by it.
         """
-        return -1 if self.first_service < 0 else self.first_service - self.discovery_before_service
+        return -1 if self.first_service < 0 else self.first_service - self.discovery_time_before_service
 
-    def begin_search(self, now: int) -> None:
-        """Its origin has no route for it and looks for one."""
-        if self.searching_since < 0:
-            self.searching_since = now
-            self.searches += 1
+    def begin_service(self, now: int) -> None:
+        """The link layer of its source takes it up for the first time."""
+        self.first_service = now
+        self.discovery_time_before_service = self.discovery_time
 
-    def end_search(self, now: int) -> None:
+    def begin_discovery(self, now: int) -> None:
+        """Its source has no route for it and looks for one."""
+        if self.discovering_since < 0:
+            self.discovering_since = now
+            self.discoveries += 1
+
+    def end_discovery(self, now: int) -> None:
         """A route was found, or given up."""
-        if self.searching_since >= 0:
-            self.discovery += now - self.searching_since
-            self.searching_since = -1
+        if self.discovering_since >= 0:
+            self.discovery_time += now - self.discovering_since
+            self.discovering_since = -1
 
     def verdict(
-        self, data: "DataPacket", receiver: int, status: DeliveryStatus, arrival: int
+        self, data: "DataPacket", receiver: RobotId, status: DeliveryStatus, arrival: int
     ) -> Verdict:
         """Its record as the log keeps it; arrival is -1 when it was lost."""
         start = self.service_start
@@ -74,7 +83,7 @@ class DataMessage:
             offered_ns=self.offered,
             service_start_ns=start,
             arrival_ns=arrival,
-            discovery_ns=self.discovery,
+            discovery_ns=self.discovery_time,
             queueing_ns=waited,
             snr_db=self.sinr_db,
             bit_error_rate=self.bit_error_rate,
@@ -83,15 +92,15 @@ class DataMessage:
 
 @dataclass(slots=True, eq=False)
 class DataPacket:
-    """A copy of a message in the hands of one robot, never changed. path, attempts: how it came there.
+    """A copy of a message that one robot holds, never changed. path, attempts: how it came there.
 
-    route, salvaged: the source route that it carries and how often it was mended (MRSR).
+    route, salvaged: the source route that it carries and how often it was salvaged (MRSR).
     """
 
     message: DataMessage
-    path: tuple[int, ...]
+    path: tuple[RobotId, ...]
     attempts: tuple[int, ...] = ()
-    route: tuple[int, ...] = ()
+    route: tuple[RobotId, ...] = ()
     salvaged: int = 0
 
     def tried(self, attempts: int) -> "DataPacket":
@@ -99,7 +108,7 @@ class DataPacket:
         tried = (*self.attempts, attempts)
         return DataPacket(self.message, self.path, tried, self.route, self.salvaged)
 
-    def moved(self, holder: int, attempts: int) -> "DataPacket":
+    def moved(self, holder: RobotId, attempts: int) -> "DataPacket":
         """The copy that the next robot holds."""
         path, tried = (*self.path, holder), (*self.attempts, attempts)
         return DataPacket(self.message, path, tried, self.route, self.salvaged)

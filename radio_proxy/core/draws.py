@@ -4,7 +4,7 @@ import numpy as np
 
 _BLOCK = 512
 
-_GRAIN = 2.0**-20
+_GRAIN = 1.0 / (1 << 20)
 """Normal numbers are multiples of this: beyond 3.65 the generator takes a logarithm from the C library,
 whose last place depends on the processor."""
 

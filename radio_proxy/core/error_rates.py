@@ -77,7 +77,7 @@ def frame_success(rate_mbps: float, sinr_db: float, bits: int) -> float:
     """Probability that a frame of `bits` has no bit error."""
     if sinr_db >= CERTAIN_SINR_DB:
         return 1.0
-    return math.exp(bits * math.log1p(-bit_error_rate(rate_mbps, sinr_db)))
+    return elementary.exp(bits * elementary.log1p(-bit_error_rate(rate_mbps, sinr_db)))
 
 
 def thesis_ber(sinr_db: float, bits: int) -> float:
@@ -85,4 +85,4 @@ def thesis_ber(sinr_db: float, bits: int) -> float:
 
     It draws the thesis's curves (0.39 at 32 dB, 800 B) but cannot drive loss: reported, never used.
     """
-    return 0.5 * math.exp(-(10.0 ** (sinr_db / 10.0)) / bits)
+    return 0.5 * elementary.exp(-elementary.power_of_ten(sinr_db / 10.0) / bits)

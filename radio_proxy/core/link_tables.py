@@ -13,7 +13,7 @@ from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss, printed_throughput_bps
 from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized, frame_probability
 from radio_proxy.core.error_rates import bit_error_rate, thesis_ber
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.saturation import Saturation, pair, ring
 
 
@@ -81,7 +81,7 @@ def _link_row(
     per_exchange = section.fading == "exchange"
     tally = Saturation(load, timing, budget, seed, section.retry_limit, per_exchange).run(seconds)
     delivered = tally.delivered[0]
-    settled = delivered + tally.given_up
+    ended = delivered + tally.given_up
     success = frame_probability(budget, snr_db, section.rate_mbps, size_bytes)
     return LinkRow(
         distance_m=distance,
@@ -90,7 +90,7 @@ def _link_row(
         thesis_ber=thesis_ber(snr_db, 8 * msdu_bytes),
         frame_success=success,
         closed_form_bps=_closed_form_bps(section, snr_db, msdu_bytes, success),
-        delivery_ratio=delivered / settled if settled else 0.0,
+        delivery_ratio=delivered / ended if ended else 0.0,
         throughput_bps=8.0 * msdu_bytes * delivered / seconds,
         delay_us=tally.delay / delivered / 1000.0 if delivered else None,
     )

@@ -1,4 +1,4 @@
-"""Small truths for the radio's tests: robots on a line or anywhere, and what they offer."""
+"""Small truths for the radio's tests: robots on a line or anywhere, and what they send."""
 
 from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.geometry import Pose, Twist

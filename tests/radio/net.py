@@ -18,7 +18,7 @@ HOP_NS = MS
 
 @dataclass(frozen=True)
 class Sent:
-    """A packet on the air: when, by whom, to whom (BROADCAST for all), how large."""
+    """A transmitted packet: when, by whom, to whom (BROADCAST for all), how large."""
 
     time_ns: int
     sender: int
@@ -27,8 +27,8 @@ class Sent:
     size_bytes: int
 
 
-class Host:
-    """A robot's card on the test network."""
+class NetNic:
+    """A robot's NIC on the test network."""
 
     def __init__(self, net: "Net", robot: int, incarnation: int) -> None:
         self.robot = robot
@@ -44,12 +44,12 @@ class Host:
 
     def deliver(self, data: DataPacket, now: int) -> None:
         self._net.delivered.append((now, data))
-        data.message.settled = True
-        self._net.release(data.message)
+        data.message.has_verdict = True
+        self._net.release_copy(data.message)
 
     def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
         data.message.loss = (data, status)
-        self._net.release(data.message)
+        self._net.release_copy(data.message)
 
     def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
         self._net.at(time_ns, lambda given, now: event(given, now) if self.alive else None, argument)
@@ -67,7 +67,7 @@ class Host:
 class Net:
     """Robots, the links among them, and everything that was sent. protocol: "mrdv" or "mrsr".
 
-    hold_ns: how long a packet waits in its card.
+    hold_ns: how long a packet waits in its queue.
     """
 
     def __init__(self, protocol: str, robots: Iterable[int], links: Iterable[tuple[int, int]]) -> None:
@@ -85,39 +85,39 @@ class Net:
         self.lost: list[tuple[DataMessage, DeliveryStatus]] = []
         self._events: list[tuple[int, int, Callable[[Any, int], None], Any]] = []
         self._sequence = 0
-        self.hosts: dict[int, Host] = {}
+        self.nics: dict[int, NetNic] = {}
         self.messages: list[DataMessage] = []
         for robot in robots:
             self.start(robot, 0)
 
     def start(self, robot: int, incarnation: int) -> None:
-        """A robot's card comes up with empty tables."""
-        host = Host(self, robot, incarnation)
+        """A robot's NIC comes up with empty tables."""
+        nic = NetNic(self, robot, incarnation)
         if self.protocol == "mrdv":
-            host.router = MrdvRouter(host, 10.0, self.now)
+            nic.router = MrdvRouter(nic, 10.0, self.now)
         else:
-            host.router = MrsrRouter(host, 10.0)
-        self.hosts[robot] = host
+            nic.router = MrsrRouter(nic, 10.0)
+        self.nics[robot] = nic
 
     def stop(self, robot: int) -> None:
-        """A robot's card dies with everything in it."""
-        host = self.hosts.pop(robot)
-        host.alive = False
-        for data in host.router.abandon():
-            host.drop(data, DeliveryStatus.SENDER_GONE)
+        """A robot's NIC goes down with everything in it."""
+        nic = self.nics.pop(robot)
+        nic.alive = False
+        for data in nic.router.abandon():
+            nic.drop(data, DeliveryStatus.SENDER_GONE)
 
     def linked(self, a: int, b: int) -> bool:
-        return frozenset((a, b)) in self.links and a in self.hosts and b in self.hosts
+        return frozenset((a, b)) in self.links and a in self.nics and b in self.nics
 
     def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
         self._sequence += 1
         heapq.heappush(self._events, (time_ns, self._sequence, event, argument))
 
-    def offer(self, source: int, destination: int) -> DataMessage:
+    def submit(self, source: int, destination: int) -> DataMessage:
         """A robot hands over a message now."""
         message = DataMessage(len(self.messages) + 1, source, destination, b"", 800, self.now)
         self.messages.append(message)
-        self.hosts[source].router.submit(DataPacket(message, (source,)), self.now)
+        self.nics[source].router.submit(DataPacket(message, (source,)), self.now)
         return message
 
     def run(self, duration_ns: int) -> None:
@@ -129,16 +129,16 @@ class Net:
             self.watch()
         self.now = until
 
-    def put(self, host: Host, packet: object, target: int, size_bytes: int, now: int) -> None:
-        self.sent.append(Sent(now, host.robot, target, packet, size_bytes))
-        self.at(now + self.hold_ns + HOP_NS, self._arrive, (host, packet, target))
+    def put(self, nic: NetNic, packet: object, target: int, size_bytes: int, now: int) -> None:
+        self.sent.append(Sent(now, nic.robot, target, packet, size_bytes))
+        self.at(now + self.hold_ns + HOP_NS, self._arrive, (nic, packet, target))
 
-    def release(self, message: DataMessage) -> None:
+    def release_copy(self, message: DataMessage) -> None:
         """A robot holds a message no more; the last one loses it unless it was delivered."""
         message.copies -= 1
         assert message.copies >= 0
-        if not message.settled and message.copies == 0:
-            message.settled = True
+        if not message.has_verdict and message.copies == 0:
+            message.has_verdict = True
             assert message.loss is not None
             self.lost.append((message, message.loss[1]))
 
@@ -146,38 +146,38 @@ class Net:
         """What was sent of one kind of packet."""
         return [sent for sent in self.sent if isinstance(sent.packet, kind)]
 
-    def _arrive(self, given: tuple[Host, object, int], now: int) -> None:
-        host, packet, target = given
+    def _arrive(self, given: tuple[NetNic, object, int], now: int) -> None:
+        nic, packet, target = given
         if target == BROADCAST:
-            if host.alive:
-                host.router.on_broadcast(packet, now)
-            for robot in sorted(self.hosts):
-                if self.linked(host.robot, robot) and not self.loss(host.robot, robot):
-                    self.hosts[robot].router.on_packet(packet, host.robot, now)
+            if nic.alive:
+                nic.router.on_broadcast_sent(packet, now)
+            for robot in sorted(self.nics):
+                if self.linked(nic.robot, robot) and not self.loss(nic.robot, robot):
+                    self.nics[robot].router.on_packet(packet, nic.robot, now)
             return
-        reached = host.alive and self.linked(host.robot, target) and not self.loss(host.robot, target)
+        reached = nic.alive and self.linked(nic.robot, target) and not self.loss(nic.robot, target)
         if reached:
-            self._receive(host, packet, target, now)
-        if not host.alive:
+            self._receive(nic, packet, target, now)
+        if not nic.alive:
             if isinstance(packet, DataPacket):
-                host.drop(packet, DeliveryStatus.SENDER_GONE)
-        elif reached and not self.loss(target, host.robot):
+                nic.drop(packet, DeliveryStatus.SENDER_GONE)
+        elif reached and not self.loss(target, nic.robot):
             if isinstance(packet, DataPacket):
-                self.release(packet.message)
-            host.router.on_acknowledged(packet, target, now)
+                self.release_copy(packet.message)
+            nic.router.on_acknowledged(packet, target, now)
         else:
             failed = packet.tried(7) if isinstance(packet, DataPacket) else packet
-            host.router.on_undeliverable(failed, target, DeliveryStatus.BELOW_THRESHOLD, now)
+            nic.router.on_undeliverable(failed, target, DeliveryStatus.BELOW_THRESHOLD, now)
 
-    def _receive(self, host: Host, packet: object, target: int, now: int) -> None:
+    def _receive(self, nic: NetNic, packet: object, target: int, now: int) -> None:
         if isinstance(packet, DataPacket):
             packet.message.copies += 1
             packet = packet.moved(target, 1)
         else:
-            for robot in sorted(self.hosts):
-                if robot != target and self.linked(host.robot, robot):
-                    self.hosts[robot].router.on_overheard(packet, host.robot, now)
-        self.hosts[target].router.on_packet(packet, host.robot, now)
+            for robot in sorted(self.nics):
+                if robot != target and self.linked(nic.robot, robot):
+                    self.nics[robot].router.on_overheard(packet, nic.robot, now)
+        self.nics[target].router.on_packet(packet, nic.robot, now)
 
 
 def chain(protocol: str, robots: int) -> Net:

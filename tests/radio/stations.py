@@ -10,8 +10,9 @@ from radio_proxy.core.airtime import Timing, dsss
 from radio_proxy.core.contention import Frame
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.link_budget import LinkBudget, link_budget
 from radio_proxy.core.medium import Emission, Medium
-from radio_proxy.core.propagation import Field, LinkBudget, link_budget
+from radio_proxy.core.propagation import Propagation
 
 
 def threshold_probability(budget: LinkBudget, snr_db: float) -> float:
@@ -30,7 +31,7 @@ def fhss(window: int, stages: int) -> Timing:
         rts=288_000,
         cts=240_000,
         ack=240_000,
-        answer_timeout=300_000,
+        response_timeout=300_000,
         mac_header_bytes=34,
         rate_mbps=1.0,
         cw_min=window - 1,
@@ -45,18 +46,18 @@ class Cell:
         self, places: list[tuple[float, float]], section: RadioSection, cuts: tuple[Cut, ...] = ()
     ) -> None:
         robots = tuple(range(1, len(places) + 1))
-        place = Field(link_budget(section), robots, ())
+        propagation = Propagation(link_budget(section), robots, ())
         still = Twist(0.0, 0.0)
         presences = [
             Presence(r, 0, Pose(x, y, 0.0), still, False)
             for r, (x, y) in zip(robots, places, strict=True)
         ]
-        place.update(tuple(presences), cuts, ())
+        propagation.update(tuple(presences), cuts, ())
         draws = Draws(generator(1, "radio"))
         self.dcf = Dcf(
             len(robots),
             dsss(section),
-            Medium(place, draws),
+            Medium(propagation, draws),
             draws,
             self,
             retry_limit=section.retry_limit,
@@ -76,11 +77,11 @@ class Cell:
         def hand_over(_: object, now: int) -> None:
             self.dcf.enqueue(sender, frame, now, False)
 
-        self.dcf.at(round(time_us * 1000), hand_over, None)
+        self.dcf.events.at(round(time_us * 1000), hand_over, None)
         return frame
 
     def run(self, until_us: float) -> None:
-        self.dcf.run(round(until_us * 1000))
+        self.dcf.events.run(round(until_us * 1000))
 
     def on_service(self, sender: int, frame: Frame, now: int) -> None:
         """Nothing to note."""

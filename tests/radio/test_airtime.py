@@ -18,7 +18,7 @@ from radio_proxy.core.airtime import (
     printed_throughput_bps,
 )
 
-# radio.md, maximum throughput = 8x / (a x + b): rate, a, b basic, b RTS/CTS, then Mb/s at 800 B.
+# Maximum throughput = 8x / (a x + b): rate, a, b basic, b RTS/CTS, then Mb/s at 800 B.
 BOUNDS = [
     (1.0, 8.0, 1138.0, 1814.0, 0.8490, 0.7792),
     (2.0, 4.0, 1002.0, 1678.0, 1.5231, 1.3120),
@@ -54,7 +54,7 @@ def test_maximum_throughput_at_1_mbps_over_size(size: int, basic: float, rts: fl
 
 
 def test_equation_3_16_as_printed_has_no_ack() -> None:
-    """7900 us and .8101 Mb/s, against 8214 us and .7792 with the full exchange (radio.md)."""
+    """7900 us and .8101 Mb/s, against 8214 us and .7792 with the full exchange."""
     assert printed_exchange_us(1.0, 800) == pytest.approx(7900.0)
     assert printed_throughput_bps(1.0, 800) == pytest.approx(0.8101e6, rel=1e-4)
     assert exchange_us(1.0, 800) == pytest.approx(8214.0)
@@ -88,7 +88,7 @@ def test_data_frames_grow_with_the_header_and_shrink_with_the_rate() -> None:
 
 
 def test_threshold_is_the_thesis_share_of_the_ideal() -> None:
-    """0.5333 Mb/s at 1 Mb/s and 800 B, the same share elsewhere (radio.md: f = 0.684)."""
+    """0.5333 Mb/s at 1 Mb/s and 800 B, the same share elsewhere (f = 0.684)."""
     assert threshold_bps(1.0, 800) == pytest.approx(533_300.0)
     assert threshold_bps(11.0, 800) / ideal_throughput_bps(11.0, 800) == pytest.approx(0.684, abs=5e-4)
 

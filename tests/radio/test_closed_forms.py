@@ -1,4 +1,4 @@
-"""Closed forms against the numbers of radio.md and of Bianchi's paper."""
+"""Closed forms against numbers computed by hand and those of Bianchi's paper."""
 
 import pytest
 
@@ -10,7 +10,7 @@ from radio_proxy.core.closed_forms import (
     bianchi_tau,
     frame_probability,
 )
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from tests.radio.stations import fhss, threshold_probability
 
 STANDARD_1999 = dsss(RadioSection(cts_timeout_us=334.0))
@@ -99,7 +99,7 @@ def test_bianchi_for_his_own_setting(
     window: int, stages: int, rts_cts: bool, row: tuple[float, ...]
 ) -> None:
     for n, expected in zip((5, 10, 20, 50), row, strict=True):
-        value = bianchi_normalized(n, fhss(window, stages), 1023, rts_cts, propagation=1000)
+        value = bianchi_normalized(n, fhss(window, stages), 1023, rts_cts, propagation_delay=1000)
         assert value == pytest.approx(expected, abs=1.01e-4)
 
 

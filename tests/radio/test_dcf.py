@@ -4,14 +4,15 @@ import pytest
 
 from onehop.contracts.messages import Cut, DeliveryStatus
 from onehop.contracts.radio_section import RadioSection
+from radio_proxy.core.addresses import EVERYONE
 from radio_proxy.core.airtime import dsss
-from radio_proxy.core.contention import EVERYONE
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.saturation import Saturation, ring
 from tests.radio.stations import Cell
 
 STILL = RadioSection(shadowing_db=0.0, mac_header_bytes=28)
 BASIC = RadioSection(shadowing_db=0.0, mac_header_bytes=28, rts_threshold_bytes=2304)
+ONE_ATTEMPT = RadioSection(shadowing_db=0.0, retry_limit=1)
 HIDDEN = (Cut((1,), (3,)),)
 """Stations 0 and 2 do not hear each other; station 1, between them, hears both."""
 
@@ -30,7 +31,7 @@ def test_shortcuts_change_nothing(stations: int, rts_cts: bool) -> None:
 
 
 def test_an_idle_medium_is_entered_after_difs_without_backoff() -> None:
-    """50 + 352 + 10 + 304 + 10 + 6816 us (radio.md)."""
+    """50 + 352 + 10 + 304 + 10 + 6816 us."""
     cell = Cell([(0, 0), (0, 0)], STILL)
     cell.send_at(1000, 0, 1)
     cell.run(20_000)
@@ -140,9 +141,36 @@ def test_nobody_answers_inside_a_reservation() -> None:
     late = cell.send_at(1200, 3, 2)
     cell.run(8_000)
     assert late.attempts >= 2
-    assert late.cause is DeliveryStatus.RETRY_LIMIT
+    assert late.cause is DeliveryStatus.RECEIVER_BUSY
     cell.run(60_000)
     assert len(cell.arrived) == 2
+
+
+@pytest.mark.parametrize(
+    "gone_us", [100, 405, 500, 720, 2000], ids=["in RTS", "before CTS", "in CTS", "after CTS", "in data"]
+)
+def test_a_receiver_that_leaves_during_an_exchange_is_the_reason_of_its_failure(
+    gone_us: float,
+) -> None:
+    """RTS from 50 to 402 us, CTS from 412 to 716 us, data from 726 us on."""
+    cell = Cell([(0, 0), (0, 0)], ONE_ATTEMPT)
+    frame = cell.send_at(0, 0, 1)
+    cell.run(gone_us)
+    cell.dcf.remove(1)
+    cell.run(20_000)
+    assert cell.given_up == [frame]
+    assert frame.cause == "receiver gone"
+
+
+def test_a_receiver_that_leaves_before_its_acknowledgement_has_the_frame() -> None:
+    """The data ends at 7,590 us, the ACK begins 10 us later."""
+    cell = Cell([(0, 0), (0, 0)], ONE_ATTEMPT)
+    frame = cell.send_at(0, 0, 1)
+    cell.run(7_595)
+    cell.dcf.remove(1)
+    cell.run(20_000)
+    assert [arrived for _, _, arrived in cell.arrived] == cell.given_up == [frame]
+    assert (frame.received, frame.cause) == (True, "receiver gone")
 
 
 def test_a_frame_is_given_up_after_the_retry_limit() -> None:

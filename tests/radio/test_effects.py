@@ -12,11 +12,11 @@ from tests.radio.missions import Mission, line, message
 
 NS3_AODV_MS = (7.542, 15.398, 23.255)
 NS3_DSR_MS = (7.702, 15.782, 23.927)
-"""Idle 1, 2 and 3 hops, ns-3 3.44, 28 B header (radio.md)."""
+"""Idle 1, 2 and 3 hops, ns-3 3.44, 28 B header."""
 
 
 def throughput_bps(reception: Reception) -> float:
-    """What a follower measures (radio.md)."""
+    """What a follower measures."""
     return 8e9 * reception.msdu_bytes / (reception.arrival_ns - reception.service_start_ns)
 
 
@@ -39,7 +39,7 @@ def test_idle_hops_take_what_ns3_measured(routing: str, expected: tuple[float, .
 
 @pytest.mark.parametrize("routing", ["mrdv", "mrsr"])
 def test_a_cut_link_makes_a_relay_and_a_throughput_below_the_threshold(routing: str) -> None:
-    """The direct link gives .8 Mb/s, a relay .41, the threshold is .5333 (radio.md)."""
+    """The direct link gives .8 Mb/s, a relay .41, the threshold is .5333."""
     mission = Mission({1: (0.0, 0.0), 2: (8.0, 0.0), 3: (4.0, 4.0)}, still(routing))
     for _ in range(2):
         mission.run(1, {1: (message(2),)})
@@ -143,12 +143,12 @@ def test_a_cut_carries_nothing_and_heals() -> None:
 def test_a_jam_raises_losses_inside_its_disc_alone() -> None:
     mission = Mission({1: (0.0, 0.0), 2: (6.0, 0.0), 3: (0.0, 6.0)}, still("direct"))
     mission.jams = (Jam(6.0, 0.0, 2.0, -40.0),)
-    fates = {v.receiver: v.status for v in mission.run(4, {1: (message(2), message(3))})}
-    assert fates == {2: DeliveryStatus.BELOW_THRESHOLD, 3: DeliveryStatus.DELIVERED}
+    statuses = {v.receiver: v.status for v in mission.run(4, {1: (message(2), message(3))})}
+    assert statuses == {2: DeliveryStatus.BELOW_THRESHOLD, 3: DeliveryStatus.DELIVERED}
 
 
 def test_bit_errors_are_told_from_a_weak_signal() -> None:
-    """With the threshold out of the way DBPSK loses frames at -5 dB (radio.md: success .04)."""
+    """With the threshold out of the way DBPSK loses frames at -5 dB (success .04)."""
     section = still("direct", receive_threshold_db=-50.0, carrier_sense_db=-60.0, tx_power_dbm=-42.0)
     (verdict,) = Mission(line(2, 1.0), section).run(4, {1: (message(2),)})
     assert verdict.snr_db == pytest.approx(-5.01, abs=0.01)

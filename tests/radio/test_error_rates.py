@@ -1,4 +1,4 @@
-"""Frame success of every modulation against ns-3's DsssErrorRateModel (radio.md, n = 6672 bits)."""
+"""Frame success of every modulation against ns-3's DsssErrorRateModel (n = 6672 bits)."""
 
 import pytest
 
@@ -67,6 +67,6 @@ def test_without_signal_a_cck_symbol_is_a_guess_among_sixteen() -> None:
 
 
 def test_the_thesis_formula_draws_its_curves() -> None:
-    """0.390 at 32 dB, 0.105 at 40 dB with 800 B (radio.md on eq. 3.25)."""
+    """0.390 at 32 dB, 0.105 at 40 dB with 800 B (eq. 3.25)."""
     assert thesis_ber(32.0, 6400) == pytest.approx(0.390, abs=5e-4)
     assert thesis_ber(40.0, 6400) == pytest.approx(0.105, abs=5e-4)

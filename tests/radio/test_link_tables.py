@@ -7,7 +7,7 @@ from radio_proxy.core.link_tables import link_table, saturation_table
 
 
 def test_link_table_over_distance() -> None:
-    """Preset thesis (radio.md): .778, .737, .244 Mb/s at 1, 10, 20 m; eq. 3.25 gives .105 at 40 dB."""
+    """Preset thesis: .778, .737, .244 Mb/s at 1, 10, 20 m; eq. 3.25 gives .105 at 40 dB."""
     table = link_table(RadioSection(), (1.0, 10.0, 20.0, 300.0), 800, seed=1, seconds=20.0)
     near, middle, far, deaf = table.rows
     assert (near.distance_m, near.snr_db) == (1.0, pytest.approx(60.0))

@@ -35,13 +35,13 @@ y = 30
 
 @dataclass
 class Diary:
-    """What went over the air, and what the robots said of themselves, tick by tick."""
+    """What the radio carried, and what the robots said of themselves, tick by tick."""
 
-    ethers: list[RadioRecord] = field(default_factory=list)
+    records: list[RadioRecord] = field(default_factory=list)
     statuses: list[dict[int, Status]] = field(default_factory=list)
 
     def hear(self, tick: int, record: list[tuple[str, bytes]]) -> None:  # noqa: ARG002
-        self.ethers.append(decode(RadioRecord, dict(record)[topics.RADIO_RECORD]))
+        self.records.append(decode(RadioRecord, dict(record)[topics.RADIO_RECORD]))
 
     def watch(self, world: World, actions: Mapping[int, Action]) -> None:  # noqa: ARG002
         self.statuses.append({i: action.status for i, action in actions.items()})
@@ -50,7 +50,7 @@ class Diary:
         """The Next messages that were settled in a stretch of time."""
         return [
             verdict
-            for record in self.ethers
+            for record in self.records
             if begin_s * SECOND <= record.time_ns < end_s * SECOND
             for verdict in record.verdicts
             if verdict.msdu_bytes == 800
@@ -60,7 +60,7 @@ class Diary:
         """What a robot said in a stretch of time."""
         return [
             statuses[robot]
-            for record, statuses in zip(self.ethers, self.statuses, strict=True)
+            for record, statuses in zip(self.records, self.statuses, strict=True)
             if begin_s * SECOND <= record.time_ns < end_s * SECOND
         ]
 
@@ -85,7 +85,7 @@ def fly(folder: Path, *settings: str, faults: tuple[str, ...]) -> Diary:
 def test_a_follower_cut_from_its_leader_is_led_over_a_relay_and_hurries(
     tmp_path: Path, routing: str
 ) -> None:
-    """A relay gives .41 Mb/s, the direct link .78, the threshold is .5333 (radio.md; thesis 3.5)."""
+    """A relay gives .41 Mb/s, the direct link .78, the threshold is .5333 (thesis 3.5)."""
     settings = (f'radio.routing="{routing}"', "radio.shadowing_db=0", "clock.limit_s=45")
     diary = fly(tmp_path, *settings, faults=(cut(25, [6], [3], 100),))
     for begin_s, hops, weak, k_rho in ((20, 1, False, 1.0), (32, 2, True, 3.0)):
@@ -100,9 +100,9 @@ def test_a_follower_cut_from_its_leader_is_led_over_a_relay_and_hurries(
     assert diary.statuses[-1][3].members == (1, 2, 3, 4, 5, 6)
 
 
-@pytest.mark.parametrize(("routing", "searching_s"), [("mrsr", 0.5), ("mrdv", 1.6)])
+@pytest.mark.parametrize(("routing", "discovery_s"), [("mrsr", 0.5), ("mrdv", 1.6)])
 def test_the_normal_discovery_leads_a_follower_when_nobody_passes_requests_on(
-    tmp_path: Path, routing: str, searching_s: float
+    tmp_path: Path, routing: str, discovery_s: float
 ) -> None:
     """Thesis 3.7.2: p_r is 0 at 1.5 m/s with gamma in the thousands; 1 is in reach of 2 alone."""
     settings = (
@@ -120,13 +120,13 @@ def test_the_normal_discovery_leads_a_follower_when_nobody_passes_requests_on(
         v for v in diary.nexts(30, 40) if v.receiver == 1 and v.status is DeliveryStatus.DELIVERED
     ]
     assert {v.path for v in arrived} == {(3, 2, 1)}
-    assert max(v.discovery_ns for v in arrived) > searching_s * SECOND
+    assert max(v.discovery_ns for v in arrived) > discovery_s * SECOND
     assert diary.statuses[-1][3].members == (1, 2, 3, 4, 5, 6)
 
 
 def costs(diary: Diary) -> tuple[int, float]:
     """Bytes of routing packets, and the median time of a Next on a hop without discovery [ms]."""
-    counted = diary.ethers[-1].control_bytes
+    counted = diary.records[-1].control_bytes
     arrived = [v for v in diary.nexts(0, 1000) if v.status is DeliveryStatus.DELIVERED]
     on_a_hop = [
         (v.arrival_ns - v.service_start_ns - v.discovery_ns) / (len(v.path) - 1) for v in arrived

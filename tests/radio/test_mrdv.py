@@ -13,7 +13,7 @@ LONG = 60_000 * MS
 
 
 def router(net: Net, robot: int) -> MrdvRouter:
-    found = net.hosts[robot].router
+    found = net.nics[robot].router
     assert isinstance(found, MrdvRouter)
     return found
 
@@ -28,19 +28,19 @@ def request(destination: int, **changes: object) -> Rreq:
 
 
 def test_packet_sizes() -> None:
-    """5.1 to 5.3, and 28 B of IP and UDP (radio.md)."""
+    """5.1 to 5.3, and 28 B of IP and UDP."""
     assert (RREQ_BYTES, RREP_BYTES, rerr_bytes(1), rerr_bytes(3)) == (52, 48, 40, 56)
 
 
 def test_a_route_is_replaced_by_a_newer_one_or_a_shorter_one_as_new() -> None:
     """6.2 and 6.7."""
     table = RouteTable()
-    assert table.offer(7, 2, 3, 10, LONG, 0)
-    assert not table.offer(7, 3, 1, 9, LONG, 0)
-    assert not table.offer(7, 3, 3, 10, LONG, 0)
-    assert not table.offer(7, 3, 4, 10, LONG, 0)
-    assert table.offer(7, 4, 2, 10, LONG, 0)
-    assert table.offer(7, 5, 9, 11, LONG, 0)
+    assert table.update(7, 2, 3, 10, LONG, 0)
+    assert not table.update(7, 3, 1, 9, LONG, 0)
+    assert not table.update(7, 3, 3, 10, LONG, 0)
+    assert not table.update(7, 3, 4, 10, LONG, 0)
+    assert table.update(7, 4, 2, 10, LONG, 0)
+    assert table.update(7, 5, 9, 11, LONG, 0)
     route = table.usable(7, 0)
     assert route is not None
     assert (route.next_hop, route.hops, route.sequence) == (5, 9, 11)
@@ -49,16 +49,16 @@ def test_a_route_is_replaced_by_a_newer_one_or_a_shorter_one_as_new() -> None:
 def test_a_dead_route_is_replaced_by_one_as_new() -> None:
     """6.7 case iii."""
     table = RouteTable()
-    table.offer(7, 2, 3, 10, LONG, 0)
+    table.update(7, 2, 3, 10, LONG, 0)
     table.break_link(2, 0)
-    assert not table.offer(7, 3, 1, 10, LONG, 0), "the broken route is number 11 now"
-    assert table.offer(7, 3, 6, 11, LONG, 0)
+    assert not table.update(7, 3, 1, 10, LONG, 0), "the broken route is number 11 now"
+    assert table.update(7, 3, 6, 11, LONG, 0)
 
 
 def test_a_route_dies_after_3_s_without_use_and_is_forgotten_after_15_more() -> None:
     """ACTIVE_ROUTE_TIMEOUT and DELETE_PERIOD, section 10."""
     table = RouteTable()
-    table.offer(7, 2, 3, 10, ACTIVE_ROUTE_NS, 0)
+    table.update(7, 2, 3, 10, ACTIVE_ROUTE_NS, 0)
     assert table.usable(7, ACTIVE_ROUTE_NS - 1) is not None
     assert table.usable(7, ACTIVE_ROUTE_NS) is None
     assert table.entry(7, ACTIVE_ROUTE_NS + DELETE_PERIOD_NS - 1) is not None
@@ -69,7 +69,7 @@ def test_use_keeps_a_route_alive() -> None:
     """6.2: each time a route is used its lifetime is at least ACTIVE_ROUTE_TIMEOUT from then."""
     net = chain("mrdv", 3)
     for _ in range(10):
-        net.offer(1, 3)
+        net.submit(1, 3)
         net.run(2_000 * MS)
     asked = [sent for sent in net.of(Rreq) if sent.sender == 1]
     assert len(net.delivered) == 10
@@ -78,11 +78,11 @@ def test_use_keeps_a_route_alive() -> None:
 
 def test_no_request_while_a_route_lives() -> None:
     net = chain("mrdv", 2)
-    net.offer(1, 2)
+    net.submit(1, 2)
     net.run(100 * MS)
     before = len(net.of(Rreq))
-    net.offer(1, 2)
-    net.offer(2, 1)
+    net.submit(1, 2)
+    net.submit(2, 1)
     net.run(100 * MS)
     assert len(net.delivered) == 3
     assert len(net.of(Rreq)) == before
@@ -126,7 +126,7 @@ def test_a_request_loses_a_hop_of_its_ttl() -> None:
 def test_only_a_route_fresh_enough_answers(asked: int | None, known: int, answers: bool) -> None:
     """6.6: the sequence number in the table is at least the one asked for."""
     net = Net("mrdv", [1], [])
-    router(net, 1).table.offer(5, 3, 2, known, LONG, 0)
+    router(net, 1).table.update(5, 3, 2, known, LONG, 0)
     router(net, 1).on_packet(request(5, sequence=asked), 8, 0)
     net.run(LONG)
     replies = [sent for sent in net.of(Rrep) if sent.target == 8]
@@ -137,7 +137,7 @@ def test_only_a_route_fresh_enough_answers(asked: int | None, known: int, answer
 def test_destination_only_is_heeded() -> None:
     """6.3, flag D."""
     net = Net("mrdv", [1], [])
-    router(net, 1).table.offer(5, 3, 2, 10, LONG, 0)
+    router(net, 1).table.update(5, 3, 2, 10, LONG, 0)
     router(net, 1).on_packet(request(5, destination_only=True), 8, 0)
     net.run(LONG)
     assert not net.of(Rrep)
@@ -146,7 +146,7 @@ def test_destination_only_is_heeded() -> None:
 def test_who_answers_for_another_tells_it_of_the_origin() -> None:
     """6.6.3: a gratuitous reply towards the destination."""
     net = Net("mrdv", [1], [])
-    router(net, 1).table.offer(5, 3, 2, 10, LONG, 0)
+    router(net, 1).table.update(5, 3, 2, 10, LONG, 0)
     router(net, 1).on_packet(request(5), 8, 0)
     (gratuitous,) = [sent.packet for sent in net.of(Rrep) if sent.target == 3]
     assert isinstance(gratuitous, Rrep)
@@ -165,7 +165,7 @@ def test_a_destination_answers_with_a_number_as_new_as_asked() -> None:
 def test_a_request_learns_a_newer_number_on_its_way() -> None:
     """6.5: the forwarder puts in the greater of both numbers."""
     net = Net("mrdv", [1], [])
-    router(net, 1).table.offer(5, 3, 2, 10, LONG, 0)
+    router(net, 1).table.update(5, 3, 2, 10, LONG, 0)
     router(net, 1).table.break_link(3, 0)
     router(net, 1).on_packet(request(5, sequence=7), 8, 0)
     net.run(100 * MS)
@@ -175,9 +175,9 @@ def test_a_request_learns_a_newer_number_on_its_way() -> None:
 
 
 def test_the_ring_grows_and_then_the_whole_net_is_asked() -> None:
-    """6.4 and section 10: TTL 1, 3, 5, 7, then NET_DIAMETER three times with doubled patience."""
+    """6.4 and section 10: TTL 1, 3, 5, 7, then NET_DIAMETER three times with doubled timeout."""
     net = Net("mrdv", [1], [])
-    net.offer(1, 2)
+    net.submit(1, 2)
     net.run(LONG)
     asked = [(s.time_ns // MS, s.packet.ttl) for s in net.of(Rreq) if isinstance(s.packet, Rreq)]
     wide = NET_DIAMETER
@@ -187,33 +187,33 @@ def test_the_ring_grows_and_then_the_whole_net_is_asked() -> None:
 def test_a_known_distance_widens_the_first_ring() -> None:
     """6.4: TTL starts at the last hop count + TTL_INCREMENT."""
     net = Net("mrdv", [1], [])
-    router(net, 1).table.offer(2, 3, 4, 10, LONG, 0)
+    router(net, 1).table.update(2, 3, 4, 10, LONG, 0)
     router(net, 1).table.break_link(3, 0)
-    net.offer(1, 2)
+    net.submit(1, 2)
     (first, *_) = net.of(Rreq)
     assert isinstance(first.packet, Rreq)
     assert (first.packet.ttl, first.packet.sequence) == (6, 11)
 
 
 def test_messages_wait_for_the_route_and_keep_their_order() -> None:
-    """6.3: buffering while searching."""
+    """6.3: buffering during discovery."""
     net = chain("mrdv", 3)
-    offered = [net.offer(1, 3) for _ in range(5)]
+    offered = [net.submit(1, 3) for _ in range(5)]
     net.run(1_000 * MS)
     assert [data.message for _, data in net.delivered] == offered
-    assert all(message.discovery > 0 for message in offered)
+    assert all(message.discovery_time > 0 for message in offered)
 
 
 def test_the_buffer_is_bounded_and_drops_the_newest() -> None:
     net = Net("mrdv", [1], [])
-    offered = [net.offer(1, 2) for _ in range(BUFFER_MESSAGES + 2)]
+    offered = [net.submit(1, 2) for _ in range(BUFFER_MESSAGES + 2)]
     assert net.lost == [(message, DeliveryStatus.QUEUE_FULL) for message in offered[-2:]]
 
 
 def test_a_partition_ends_in_no_route() -> None:
     """6.3: after RREQ_RETRIES the messages are dropped: at 21.52 s with the timers of section 10."""
     net = Net("mrdv", [1, 2], [])
-    message = net.offer(1, 2)
+    message = net.submit(1, 2)
     net.run(21_519 * MS)
     assert not net.lost
     net.run(2 * MS)
@@ -224,7 +224,7 @@ def test_no_more_than_ten_requests_a_second() -> None:
     """6.3: RREQ_RATELIMIT."""
     net = Net("mrdv", [1], [])
     for destination in range(2, 40):
-        net.offer(1, destination)
+        net.submit(1, destination)
     net.run(2_999 * MS)
     times = [sent.time_ns for sent in net.of(Rreq)]
     assert len(times) == 30
@@ -236,7 +236,7 @@ def test_a_broken_link_kills_every_route_over_it_one_number_newer() -> None:
     net = Net("mrdv", [1], [])
     table = router(net, 1).table
     for destination, via in ((5, 3), (6, 3), (7, 4)):
-        table.offer(destination, via, 2, 10, LONG, 0)
+        table.update(destination, via, 2, 10, LONG, 0)
     router(net, 1).on_undeliverable(Rerr(()), 3, DeliveryStatus.BELOW_THRESHOLD, 0)
     assert [table.usable(d, 0) is not None for d in (5, 6, 7)] == [False, False, True]
     assert [entry.sequence for d in (5, 6, 7) if (entry := table.entry(d, 0))] == [11, 11, 10]
@@ -245,11 +245,11 @@ def test_a_broken_link_kills_every_route_over_it_one_number_newer() -> None:
 def test_a_stale_route_through_the_asker_does_not_answer() -> None:
     """6.11: the number that a break adds keeps the asker from being sent back to itself."""
     net = chain("mrdv", 3)
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(500 * MS)
     net.links.remove(frozenset((2, 3)))
     net.loss = lambda sender, receiver: (sender, receiver) == (2, 1)
-    net.offer(2, 3)
+    net.submit(2, 3)
     net.run(20 * MS)
     assert router(net, 2).table.usable(3, net.now) is None
     net.loss = lambda _sender, _receiver: False
@@ -264,8 +264,8 @@ def test_precursors_are_told(precursors: tuple[int, ...], target: int) -> None:
     """6.11: unicast to a single precursor, broadcast to several, none without."""
     net = Net("mrdv", [1], [])
     table = router(net, 1).table
-    table.offer(5, 3, 2, 10, LONG, 0)
-    table.offer(6, 3, 2, 20, LONG, 0)
+    table.update(5, 3, 2, 10, LONG, 0)
+    table.update(6, 3, 2, 20, LONG, 0)
     route = table.usable(5, 0)
     assert route is not None
     for robot in precursors:
@@ -279,8 +279,8 @@ def test_an_error_kills_only_routes_through_its_sender_and_travels_on() -> None:
     """6.11 case iii."""
     net = Net("mrdv", [1], [])
     table = router(net, 1).table
-    table.offer(5, 3, 2, 10, LONG, 0)
-    table.offer(6, 4, 2, 10, LONG, 0)
+    table.update(5, 3, 2, 10, LONG, 0)
+    table.update(6, 4, 2, 10, LONG, 0)
     for destination in (5, 6):
         route = table.usable(destination, 0)
         assert route is not None
@@ -294,22 +294,22 @@ def test_an_error_kills_only_routes_through_its_sender_and_travels_on() -> None:
 def test_data_without_a_route_is_answered_with_an_error() -> None:
     """6.11 case ii."""
     net = chain("mrdv", 3)
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(1_000 * MS)
     net.stop(2)
     net.start(2, 1)
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(LONG)
     assert [(sent.sender, sent.target) for sent in net.of(Rerr)][:1] == [(2, 1)]
     assert [status for _, status in net.lost] == [DeliveryStatus.NO_ROUTE]
 
 
-def test_the_origin_searches_once_more_when_its_link_breaks() -> None:
+def test_the_source_discovers_once_more_when_its_link_breaks() -> None:
     net = Net("mrdv", [1, 2, 3], [(1, 3), (1, 2), (2, 3)])
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(100 * MS)
     net.links.remove(frozenset((1, 3)))
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(2_000 * MS)
     assert [data.path for _, data in net.delivered] == [(1, 3), (1, 2, 3)]
 
@@ -340,7 +340,7 @@ def test_a_moving_robot_hardly_passes_requests_on() -> None:
 def test_origin_and_target_are_exempt_from_the_probability() -> None:
     net = chain("mrdv", 2)
     net.speed, net.remaining = 3.0, 100.0
-    net.offer(1, 2)
+    net.submit(1, 2)
     net.run(100 * MS)
     assert len(net.delivered) == 1
 
@@ -349,19 +349,19 @@ def test_the_normal_discovery_delivers_when_nobody_passes_on() -> None:
     """Thesis 3.7.2: the fallback; here after the rings, at 1.92 s."""
     net = chain("mrdv", 4)
     net.speed, net.remaining = 3.0, 200.0
-    message = net.offer(1, 4)
+    message = net.submit(1, 4)
     net.run(LONG)
     assert [data.path for _, data in net.delivered] == [(1, 2, 3, 4)]
-    assert 1_920 * MS < message.discovery < 2_100 * MS
+    assert 1_920 * MS < message.discovery_time < 2_100 * MS
 
 
 def test_hops_cost_what_they_should() -> None:
     net = chain("mrdv", 4)
-    net.offer(1, 4)
+    net.submit(1, 4)
     net.run(2_000 * MS)
     net.sent.clear()
     start = net.now
-    net.offer(1, 4)
+    net.submit(1, 4)
     net.run(100 * MS)
     assert net.delivered[-1][0] - start == 3 * HOP_NS
     assert all(isinstance(sent.packet, DataPacket) and sent.size_bytes == 800 for sent in net.sent)
@@ -372,10 +372,10 @@ def test_after_a_restart_only_destinations_answer() -> None:
     net = chain("mrdv", 3)
     net.stop(2)
     net.start(2, 1)
-    net.offer(2, 3)
+    net.submit(2, 3)
     net.run(20_000 * MS)
     net.links.clear()
-    net.offer(2, 3)
+    net.submit(2, 3)
     net.run(100 * MS)
     flags = [s.packet.destination_only for s in net.of(Rreq) if isinstance(s.packet, Rreq)]
     assert flags[0] is True

@@ -15,7 +15,7 @@ LONG = 60_000 * MS
 
 
 def router(net: Net, robot: int) -> MrsrRouter:
-    found = net.hosts[robot].router
+    found = net.nics[robot].router
     assert isinstance(found, MrsrRouter)
     return found
 
@@ -42,7 +42,7 @@ def test_the_header_grows_by_four_bytes_a_hop() -> None:
     sizes = [source_route_bytes(tuple(range(n))) for n in (2, 3, 4, 5)]
     assert [b - a for a, b in pairwise(sizes)] == [4, 4, 4]
     net = chain("mrsr", 4)
-    net.offer(1, 4)
+    net.submit(1, 4)
     net.run(2_000 * MS)
     assert {sent.size_bytes for sent in net.of(DataPacket)} == {800 + source_route_bytes((1, 2, 3, 4))}
 
@@ -130,21 +130,21 @@ def test_a_reply_that_is_needless_is_not_sent() -> None:
 def test_an_overheard_reply_teaches_the_way_to_everyone_on_it() -> None:
     """3.3.1: 5 hears 2 pass on the reply of 3 to 1."""
     net = Net("mrsr", [1, 2, 3, 5], [(1, 2), (2, 3), (2, 5)])
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(1_000 * MS)
     assert router(net, 5).cache.find(3, net.now) == (5, 2, 3)
     assert router(net, 5).cache.find(1, net.now) == (5, 2, 1)
     asked = len(net.of(Rreq))
-    net.offer(5, 3)
+    net.submit(5, 3)
     net.run(1_000 * MS)
     assert [arrived.path for _, arrived in net.delivered] == [(1, 2, 3), (5, 2, 3)]
     assert len(net.of(Rreq)) == asked
 
 
 def test_an_overheard_reply_sends_what_waits_for_its_way() -> None:
-    """8.2.6: a route that comes by chance ends a search as well."""
+    """8.2.6: a route that comes by chance ends a discovery as well."""
     net = Net("mrsr", [1, 2, 4, 9], [(1, 2), (2, 4)])
-    message = net.offer(1, 4)
+    message = net.submit(1, 4)
     router(net, 1).on_overheard(Rrep(7, (9, 2, 4), (2, 9)), 2, 0)
     net.run(5 * MS)
     assert [arrived.message for _, arrived in net.delivered] == [message]
@@ -158,11 +158,11 @@ def test_an_overheard_error_is_heeded() -> None:
     assert router(net, 1).cache.paths() == ((1, 2), (1, 2, 3))
 
 
-def test_the_patience_with_a_request_counts_from_when_it_is_sent() -> None:
-    """3.3.3: one that waited in the card is no reason to ask the whole net."""
+def test_the_timeout_of_a_request_counts_from_when_it_is_sent() -> None:
+    """3.3.3: one that waited in the queue is no reason to ask the whole network."""
     net = Net("mrsr", [1], [])
     net.hold_ns = 40 * MS
-    net.offer(1, 2)
+    net.submit(1, 2)
     net.run(70 * MS)
     assert [sent.time_ns for sent in net.of(Rreq)] == [0]
     net.run(1 * MS)
@@ -172,7 +172,7 @@ def test_the_patience_with_a_request_counts_from_when_it_is_sent() -> None:
 def test_requests_come_ever_more_rarely() -> None:
     """Section 9: 30 ms for the neighbours, then 0.5 s doubling to 10 s; given up at 30 s."""
     net = Net("mrsr", [1], [])
-    message = net.offer(1, 2)
+    message = net.submit(1, 2)
     net.run(LONG)
     asked = [(s.packet.ttl, s.packet.normal) for s in net.of(Rreq) if isinstance(s.packet, Rreq)]
     assert asked == [(1, False), (255, False), *[(255, True)] * 6]
@@ -184,7 +184,7 @@ def test_requests_come_ever_more_rarely() -> None:
 def test_the_send_buffer_is_bounded_and_drops_the_newest() -> None:
     """4.2 leaves the policy open beyond 'SHOULD'; 64 messages, 30 s."""
     net = Net("mrsr", [1], [])
-    offered = [net.offer(1, 2) for _ in range(SEND_BUFFER + 1)]
+    offered = [net.submit(1, 2) for _ in range(SEND_BUFFER + 1)]
     assert net.lost == [(offered[-1], DeliveryStatus.QUEUE_FULL)]
     net.run(30_000 * MS)
     assert len(net.lost) == SEND_BUFFER + 1
@@ -193,20 +193,20 @@ def test_the_send_buffer_is_bounded_and_drops_the_newest() -> None:
 def test_messages_wait_for_the_route_and_keep_their_order() -> None:
     """4.2 and 8.2.6: one reply sends everything that waits for its target."""
     net = chain("mrsr", 3)
-    offered = [net.offer(1, 3) for _ in range(5)]
+    offered = [net.submit(1, 3) for _ in range(5)]
     net.run(1_000 * MS)
     assert [arrived.message for _, arrived in net.delivered] == offered
-    assert all(0 < message.discovery < 100 * MS for message in offered)
+    assert all(0 < message.discovery_time < 100 * MS for message in offered)
 
 
 def test_no_request_while_a_route_lives() -> None:
     net = chain("mrsr", 3)
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(1_000 * MS)
     before = len(net.of(Rreq))
     net.run(200_000 * MS)
-    net.offer(1, 3)
-    net.offer(3, 1)
+    net.submit(1, 3)
+    net.submit(3, 1)
     net.run(1_000 * MS)
     assert len(net.delivered) == 3
     assert len(net.of(Rreq)) == before
@@ -246,17 +246,17 @@ def test_a_broken_link_is_forgotten_everywhere() -> None:
     cache = RouteCache(1)
     for path in ((1, 2, 3, 4), (1, 5, 3, 2), (1, 6, 4)):
         cache.add(path, 0)
-    cache.forget_link(2, 3)
+    cache.remove_link(2, 3)
     assert cache.paths() == ((1, 2), (1, 5, 3), (1, 6, 4), (1, 5), (1, 6))
 
 
 def test_a_broken_link_is_reported_to_the_source() -> None:
     """8.3.4; every robot that passes the error on forgets the link as well (8.3.5)."""
     net = chain("mrsr", 4)
-    net.offer(1, 4)
+    net.submit(1, 4)
     net.run(2_000 * MS)
     net.links.remove(frozenset((3, 4)))
-    net.offer(1, 4)
+    net.submit(1, 4)
     net.run(20 * MS)
     assert [(s.sender, s.target, s.packet) for s in net.of(Rerr)] == [
         (3, 2, Rerr(3, 4, (3, 2, 1))),
@@ -272,7 +272,7 @@ def test_a_message_is_salvaged_over_another_cached_path() -> None:
     router(net, 2).cache.add((2, 4, 3), 0)
     router(net, 2).cache.add((2, 3), 0)
     net.links.remove(frozenset((2, 3)))
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(100 * MS)
     ((_, arrived),) = net.delivered
     assert (arrived.path, arrived.route, arrived.salvaged) == ((1, 2, 4, 3), (2, 4, 3), 1)
@@ -284,14 +284,14 @@ def test_a_message_is_salvaged_fifteen_times_at_most() -> None:
     net = Net("mrsr", [1, 2], [(1, 2)])
     router(net, 2).cache.add((2, 4, 3), 0)
     worn = data(1, (1, 2), (1, 2, 3), salvaged=MAX_SALVAGE)
-    router(net, 2).on_undeliverable(worn.tried(7), 3, DeliveryStatus.RETRY_LIMIT, 0)
-    assert net.lost == [(worn.message, DeliveryStatus.RETRY_LIMIT)]
+    router(net, 2).on_undeliverable(worn.tried(7), 3, DeliveryStatus.BELOW_THRESHOLD, 0)
+    assert net.lost == [(worn.message, DeliveryStatus.BELOW_THRESHOLD)]
 
 
 def test_both_directions_of_a_route_are_learnt_from_data() -> None:
     """8.1.4: the destination answers without a discovery of its own."""
     net = chain("mrsr", 3)
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(1_000 * MS)
     assert router(net, 2).cache.find(1, net.now) == (2, 1)
     assert router(net, 3).cache.find(1, net.now) == (3, 2, 1)
@@ -314,26 +314,26 @@ def test_the_normal_discovery_delivers_when_nobody_passes_on() -> None:
     """Thesis 3.7.2: p_r is about 0; the request at 530 ms is a normal one."""
     net = chain("mrsr", 4)
     net.speed, net.remaining = 3.0, 200.0
-    message = net.offer(1, 4)
+    message = net.submit(1, 4)
     net.run(LONG)
     assert [arrived.path for _, arrived in net.delivered] == [(1, 2, 3, 4)]
-    assert 530 * MS < message.discovery < 650 * MS
+    assert 530 * MS < message.discovery_time < 650 * MS
 
 
 def test_origin_and_target_are_exempt_from_the_probability() -> None:
     net = chain("mrsr", 2)
     net.speed, net.remaining = 3.0, 100.0
-    net.offer(1, 2)
+    net.submit(1, 2)
     net.run(30 * MS)
     assert len(net.delivered) == 1
 
 
-def test_the_origin_searches_once_more_when_its_link_breaks() -> None:
+def test_the_source_discovers_once_more_when_its_link_breaks() -> None:
     net = Net("mrsr", [1, 2, 3], [(1, 3), (1, 2), (2, 3)])
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(100 * MS)
     net.links.remove(frozenset((1, 3)))
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(2_000 * MS)
     assert [arrived.path for _, arrived in net.delivered] == [(1, 3), (1, 2, 3)]
 
@@ -348,7 +348,7 @@ def test_detours_are_cut_out_of_a_path(path: tuple[int, ...], straight: tuple[in
 
 def test_a_request_is_a_broadcast_and_a_reply_is_not() -> None:
     net = chain("mrsr", 3)
-    net.offer(1, 3)
+    net.submit(1, 3)
     net.run(1_000 * MS)
     assert {sent.target for sent in net.of(Rreq)} == {BROADCAST}
     assert BROADCAST not in {sent.target for sent in net.of(Rrep)}

@@ -11,14 +11,14 @@ STILL = RadioSection(routing="direct", shadowing_db=0.0, mac_header_bytes=28)
 
 
 def test_idle_exchange_takes_what_ns3_measured() -> None:
-    """ns-3 3.44, one hop without backoff, 28 B header: 7.542 ms (radio.md)."""
+    """ns-3 3.44, one hop without backoff, 28 B header: 7.542 ms."""
     (verdict,) = Mission(line(2, 5.0), STILL).run(1, {1: (message(2),)})
     assert verdict.status is DeliveryStatus.DELIVERED
     assert verdict.arrival_ns - verdict.service_start_ns == pytest.approx(7_542_000, abs=100)
 
 
 def test_waiting_behind_other_messages_is_not_service() -> None:
-    """Five Nexts queued together each measure their own service, not the queue (radio.md)."""
+    """Five Nexts queued together each measure their own service, not the queue."""
     team = line(6, 2.0)
     outbox = tuple(message(i) for i in (2, 3, 4, 5, 6))
     verdicts = Mission(team, STILL).run(2, {1: outbox})
@@ -51,8 +51,8 @@ def test_broadcasts_of_hidden_robots_collide_for_good() -> None:
     beacon = (message(BROADCAST, 100),)
     verdicts = mission.run(4, {1: beacon, 3: beacon})
     assert sorted((v.source, v.status, v.attempts) for v in verdicts if v.receiver == 2) == [
-        (1, DeliveryStatus.RETRY_LIMIT, (1,)),
-        (3, DeliveryStatus.RETRY_LIMIT, (1,)),
+        (1, DeliveryStatus.COLLISION, (1,)),
+        (3, DeliveryStatus.COLLISION, (1,)),
     ]
 
 
@@ -61,7 +61,7 @@ def test_broadcasts_of_robots_that_hear_each_other_take_turns() -> None:
     mission = Mission(line(3, 5.0), STILL)
     beacon = (message(BROADCAST, 100),)
     rounds = [mission.run(2, {1: beacon, 3: beacon}) for _ in range(100)]
-    collided = sum(v.status is DeliveryStatus.RETRY_LIMIT for r in rounds for v in r if v.receiver == 2)
+    collided = sum(v.status is DeliveryStatus.COLLISION for r in rounds for v in r if v.receiver == 2)
     assert 0 < collided < 20
 
 
@@ -89,7 +89,7 @@ def test_frames_to_a_robot_that_left_end_in_receiver_gone() -> None:
     assert verdict.status is DeliveryStatus.RECEIVER_GONE
 
 
-def test_a_restarted_robot_starts_with_an_empty_card() -> None:
+def test_a_restarted_robot_starts_with_an_empty_queue() -> None:
     mission = Mission(line(2, 5.0), STILL)
     mission.step({1: tuple(message(2) for _ in range(9))})
     mission.incarnations[1] = 1
@@ -105,7 +105,7 @@ def test_a_full_queue_drops_the_newest() -> None:
 
 
 def test_robots_that_speak_in_the_same_tick_do_not_always_collide() -> None:
-    """Ticks put hand-overs into one instant; the cards spread them by a backoff."""
+    """Ticks put hand-overs into one instant; the DCF spreads them by a backoff."""
     attempts = [
         sum(v.attempts)
         for seed in range(20)
@@ -138,7 +138,7 @@ def test_what_a_relay_drops_before_it_acknowledges_has_a_verdict() -> None:
 
 
 def test_discovery_is_service_and_waiting_is_not() -> None:
-    """radio.md: discovery, retries and relays count, the wait behind other messages does not."""
+    """Discovery, retries and relays count, the wait behind other messages does not."""
     mission = Mission(line(3, 20.0), RadioSection(routing="mrdv", shadowing_db=0.0))
     verdicts = mission.run(40, {1: (message(3), message(3), message(3))})
     for verdict in verdicts:

@@ -20,7 +20,7 @@ ROBOTS = 5
 robots = st.integers(1, ROBOTS)
 place = st.tuples(st.integers(0, 60), st.integers(0, 20))
 TICKS_TO_SETTLE = 1000
-"""50 s: longer than two searches of MRDV (21.5 s each) or the send buffer of MRSR (30 s)."""
+"""50 s: longer than two discoveries of MRDV (21.5 s each) or the send buffer of MRSR (30 s)."""
 
 
 class RadioMachine(RuleBasedStateMachine):
@@ -39,7 +39,7 @@ class RadioMachine(RuleBasedStateMachine):
         self.settled: set[tuple[int, int, int]] = set()
 
     @rule(source=robots, destination=st.integers(0, ROBOTS + 1), size=st.sampled_from([20, 60, 800]))
-    def offer(self, source: int, destination: int, size: int) -> None:
+    def submit(self, source: int, destination: int, size: int) -> None:
         if source in self.mission.places:
             number = len(self.pending.get(source, ())) + self.counts[source] + 1
             sent = message(destination, size, payload=b"%d:%d" % (source, number))

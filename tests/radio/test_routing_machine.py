@@ -23,11 +23,11 @@ ROBOTS = 6
 robots = st.integers(1, ROBOTS)
 PAIRS = [(a, b) for a in range(1, ROBOTS + 1) for b in range(a + 1, ROBOTS + 1)]
 QUIET_NS = 90_000 * MS
-"""Longer than any search, timer or buffer lasts."""
+"""Longer than any discovery, timer or buffer lasts."""
 
 
 class RoutingMachine(RuleBasedStateMachine):
-    """Robots offer messages while links come and go; what must hold is in the invariants."""
+    """Robots submit messages while links come and go; what must hold is in the invariants."""
 
     protocol = ""
 
@@ -44,17 +44,17 @@ class RoutingMachine(RuleBasedStateMachine):
         raise NotImplementedError
 
     @rule(source=robots, destination=robots, count=st.integers(1, 4))
-    def offer(self, source: int, destination: int, count: int) -> None:
-        if source in self.net.hosts and source != destination:
+    def submit(self, source: int, destination: int, count: int) -> None:
+        if source in self.net.nics and source != destination:
             for _ in range(count):
-                self.net.offer(source, destination)
+                self.net.submit(source, destination)
                 self.offered += 1
 
     @rule(seed=st.integers(0, 1000))
     def everybody_talks(self, seed: int) -> None:
         dice = random.Random(seed)
-        for source in sorted(self.net.hosts):
-            self.offer(source, dice.randint(1, ROBOTS), 1)
+        for source in sorted(self.net.nics):
+            self.submit(source, dice.randint(1, ROBOTS), 1)
 
     @rule(duration=st.sampled_from([1, 3, 8, 40, 300, 300, 2500, 16000]))
     def wait(self, duration: int) -> None:
@@ -79,7 +79,7 @@ class RoutingMachine(RuleBasedStateMachine):
 
     @rule(robot=robots)
     def stop_or_restart(self, robot: int) -> None:
-        if robot in self.net.hosts:
+        if robot in self.net.nics:
             self.net.stop(robot)
         else:
             self.incarnations[robot] += 1
@@ -112,7 +112,7 @@ class RoutingMachine(RuleBasedStateMachine):
     def teardown(self) -> None:
         self.net.run(QUIET_NS)
         assert len(self.net.messages) == self.offered
-        assert all(message.settled for message in self.net.messages), "no message may hang"
+        assert all(message.has_verdict for message in self.net.messages), "no message may hang"
         before = len(self.net.sent)
         self.net.run(QUIET_NS)
         assert len(self.net.sent) == before, "an idle net is silent"
@@ -125,10 +125,10 @@ class MrdvMachine(RoutingMachine):
 
     def routes_are_free_of_loops(self) -> None:
         for destination in range(1, ROBOTS + 1):
-            for start in sorted(self.net.hosts):
+            for start in sorted(self.net.nics):
                 visited = [start]
-                while (here := visited[-1]) in self.net.hosts and here != destination:
-                    router = self.net.hosts[here].router
+                while (here := visited[-1]) in self.net.nics and here != destination:
+                    router = self.net.nics[here].router
                     assert isinstance(router, MrdvRouter)
                     route = router.table.usable(destination, self.net.now)
                     if route is None:
@@ -138,10 +138,10 @@ class MrdvMachine(RoutingMachine):
 
     @invariant()
     def tables_and_buffers_are_bounded(self) -> None:
-        for host in self.net.hosts.values():
-            assert isinstance(host.router, MrdvRouter)
-            assert len(host.router.table.destinations()) <= ROBOTS
-            assert 0 <= host.router.buffered <= BUFFER_MESSAGES
+        for nic in self.net.nics.values():
+            assert isinstance(nic.router, MrdvRouter)
+            assert len(nic.router.table.destinations()) <= ROBOTS
+            assert 0 <= nic.router.buffered <= BUFFER_MESSAGES
 
 
 class MrsrMachine(RoutingMachine):
@@ -150,19 +150,19 @@ class MrsrMachine(RoutingMachine):
     protocol = "mrsr"
 
     def routes_are_free_of_loops(self) -> None:
-        for robot, host in self.net.hosts.items():
-            assert isinstance(host.router, MrsrRouter)
-            for path in host.router.cache.paths():
+        for robot, nic in self.net.nics.items():
+            assert isinstance(nic.router, MrsrRouter)
+            for path in nic.router.cache.paths():
                 assert path[0] == robot
                 assert len(set(path)) == len(path) > 1
 
     @invariant()
     def tables_and_buffers_are_bounded(self) -> None:
-        for host in self.net.hosts.values():
-            assert isinstance(host.router, MrsrRouter)
-            assert len(host.router.cache.paths()) <= PATHS_PER_DESTINATION * (ROBOTS - 1)
-            assert 0 <= host.router.buffered <= SEND_BUFFER
-            assert host.router.remembered_requests() <= REQUEST_IDS * ROBOTS
+        for nic in self.net.nics.values():
+            assert isinstance(nic.router, MrsrRouter)
+            assert len(nic.router.cache.paths()) <= PATHS_PER_DESTINATION * (ROBOTS - 1)
+            assert 0 <= nic.router.buffered <= SEND_BUFFER
+            assert nic.router.remembered_requests() <= REQUEST_IDS * ROBOTS
 
 
 def explore(machine: type[RoutingMachine], examples: int) -> None:
@@ -198,12 +198,12 @@ def test_everything_arrives_on_a_net_that_holds_together(
     net = Net(protocol, range(1, count + 1), [*tree, *(pair for pair in extra if max(pair) <= count)])
     for source, destination in flows:
         if source != destination and max(source, destination) <= count:
-            net.offer(source, destination)
-            net.offer(source, destination)
+            net.submit(source, destination)
+            net.submit(source, destination)
     net.run(QUIET_NS)
     assert not net.lost
-    assert all(message.settled for message in net.messages)
-    assert all(message.discovery < 2_000 * MS for message in net.messages)
+    assert all(message.has_verdict for message in net.messages)
+    assert all(message.discovery_time < 2_000 * MS for message in net.messages)
 
 
 @pytest.mark.slow

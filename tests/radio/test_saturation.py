@@ -1,11 +1,11 @@
-"""The event engine against theory: Bianchi within 3 %, the fading rows within 3 % (radio.md)."""
+"""The event engine against theory: Bianchi within 3 %, the fading rows within 3 %."""
 
 import pytest
 
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import Timing, dsss
 from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized
-from radio_proxy.core.propagation import link_budget
+from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.saturation import Saturation, pair, ring
 from tests.radio.stations import fhss, threshold_probability
 
@@ -49,7 +49,7 @@ def test_fhss_cell_is_within_3_percent_of_bianchi(
 
 @pytest.mark.slow
 def test_six_stations_share_the_cell_evenly() -> None:
-    """.7975 in all, .1329 each (radio.md)."""
+    """.7975 in all, .1329 each."""
     tally = Saturation(ring(6, 800, True), dsss(RadioSection()), STILL, 3, PATIENT).run(60.0)
     shares = [delivered * 6400 / 60e6 for delivered in tally.delivered]
     assert sum(shares) == pytest.approx(0.7975, rel=0.03)
@@ -94,7 +94,7 @@ def test_fading_per_exchange_is_within_3_percent_of_the_closed_form(distance: fl
     ],
 )
 def test_one_flow_is_near_what_ns3_measured(distance: float, measured: float) -> None:
-    """ns-3 3.44, one saturated flow, 28 B header, sigma 4 dB a frame (radio.md).
+    """ns-3 3.44, one saturated flow, 28 B header, sigma 4 dB a frame.
 
     Within 4 % to 12 m; farther out ns-3 forgives more (it counts the retries of RTS and data apart).
     """

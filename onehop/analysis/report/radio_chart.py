@@ -10,15 +10,18 @@ from onehop.analysis.palette import FAINT, INK, OKABE_ITO
 from onehop.analysis.report.report_data import ReportData
 from onehop.contracts.messages import DeliveryStatus
 
-_FATES = {
+COLOURS = {
     DeliveryStatus.BELOW_THRESHOLD: "#D55E00",
     DeliveryStatus.BIT_ERRORS: "#E69F00",
-    DeliveryStatus.RETRY_LIMIT: "#CC79A7",
+    DeliveryStatus.COLLISION: "#CC79A7",
+    DeliveryStatus.RECEIVER_BUSY: "#009E73",
     DeliveryStatus.NO_ROUTE: "#56B4E9",
     DeliveryStatus.QUEUE_FULL: "#B8A800",
     DeliveryStatus.RECEIVER_GONE: "#5B5B5B",
+    DeliveryStatus.RELAY_GONE: "#0072B2",
     DeliveryStatus.SENDER_GONE: "#A5A5A5",
 }
+"""Colour of each reason for which a message is lost."""
 
 
 def radio_chart(material: ReportData) -> Figure:
@@ -44,10 +47,10 @@ def _draw_losses(axes: Axes, material: ReportData) -> None:
     found = losses(material)
     names = [str(robot) for robot in material.robots]
     base = np.zeros(len(names))
-    for fate, colour in _FATES.items():
-        counts = np.array([found[robot][fate] for robot in material.robots])
+    for status, colour in COLOURS.items():
+        counts = np.array([found[robot][status] for robot in material.robots])
         if counts.any():
-            axes.bar(names, counts, bottom=base, color=colour, width=0.6, label=fate.value)
+            axes.bar(names, counts, bottom=base, color=colour, width=0.6, label=status.value)
             base += counts
     received = Counter(frame.receiver for frame in material.frames)
     for place, robot in enumerate(material.robots):

@@ -1,37 +1,44 @@
 """No routing: every message goes to its destination in one hop or not at all."""
 
 from onehop.contracts.messages import DeliveryStatus
+from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.data_message import DataPacket
-from radio_proxy.core.routing.interface import Host
+from radio_proxy.core.routing.interface import NicServices
 
 
 class DirectRouter:
     """One hop, no tables, no control packets."""
 
-    def __init__(self, host: Host) -> None:
-        self._host = host
+    def __init__(self, nic: NicServices) -> None:
+        self._nic = nic
 
     def submit(self, data: DataPacket, now: int) -> None:
         message = data.message
-        if not self._host.send(data, message.destination, message.msdu_bytes, "", now):
-            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
+        if not self._nic.send(data, message.destination, message.msdu_bytes, "", now):
+            self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
 
     def abandon(self) -> list[DataPacket]:
         return []
 
-    def on_packet(self, packet: object, sender: int, now: int) -> None:  # noqa: ARG002
+    def on_packet(self, packet: object, sender: RobotId, now: int) -> None:  # noqa: ARG002
         assert isinstance(packet, DataPacket)
-        self._host.deliver(packet, now)
+        self._nic.deliver(packet, now)
 
-    def on_overheard(self, packet: object, sender: int, now: int) -> None:
+    def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
         """Others' control packets say nothing that this protocol uses."""
 
-    def on_broadcast(self, packet: object, now: int) -> None:
-        """Nothing waits for an answer."""
+    def on_broadcast_sent(self, packet: object, now: int) -> None:
+        """Nothing waits for a reply."""
 
-    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
+    def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:
         """Nothing is kept that could be refreshed."""
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:  # noqa: ARG002
+    def on_undeliverable(
+        self,
+        packet: object,
+        next_hop: RobotId,  # noqa: ARG002
+        cause: DeliveryStatus,
+        now: int,  # noqa: ARG002
+    ) -> None:
         assert isinstance(packet, DataPacket)
-        self._host.drop(packet, cause)
+        self._nic.drop(packet, cause)

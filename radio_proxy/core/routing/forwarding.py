@@ -5,6 +5,8 @@ p_r = min(1, (1/v)^gamma), v the forwarder's own speed, gamma growing with its o
 whose flag says that a discovery has failed before.
 """
 
+from onehop.contracts import elementary
+
 BROADCAST_JITTER_NS = 10_000_000
 """Longest wait before a request is passed on, lest neighbours collide (RFC 4728, section 9) [ns]."""
 
@@ -22,4 +24,4 @@ def forwarding_probability(speed: float, weight: float) -> float:
     """p_r of a robot at `speed` [m/s] with gamma = `weight`; at rest it is 1."""
     if speed <= 1.0:
         return 1.0
-    return float(speed**-weight)
+    return elementary.exp(-weight * elementary.log1p(speed - 1.0))

@@ -1,19 +1,20 @@
-"""What a routing protocol is given, and what it must do. Robots by id, times in ns."""
+"""What a routing protocol is given, and what it must do. Times in ns."""
 
-from collections.abc import Callable
 from typing import Any, Protocol
 
 from onehop.contracts.messages import DeliveryStatus
+from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.data_message import DataPacket
+from radio_proxy.core.event_queue import Callback
 
 
-class Host(Protocol):
-    """What the card of one robot lets its routing protocol do."""
+class NicServices(Protocol):
+    """What the NIC of one robot offers to its routing protocol (nic.py)."""
 
-    robot: int
+    robot: RobotId
     incarnation: int
 
-    def send(self, packet: object, next_hop: int, size_bytes: int, kind: str, now: int) -> bool:
+    def send(self, packet: object, next_hop: RobotId, size_bytes: int, kind: str, now: int) -> bool:
         """Queue a packet for one hop (BROADCAST for all); False when the queue is full.
 
         kind: what the bytes are counted as ("rreq", ...), "" for data.
@@ -21,15 +22,15 @@ class Host(Protocol):
         ...
 
     def deliver(self, data: DataPacket, now: int) -> None:
-        """Hand a message to its robot; a second copy is dropped here."""
+        """A message has reached this robot, its destination; a second copy is ignored."""
         ...
 
     def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
-        """Give one copy of a message up."""
+        """Give up one copy of a message, and say why."""
         ...
 
-    def at(self, time_ns: int, event: Callable[[Any, int], None], argument: Any) -> None:
-        """Call event(argument, time_ns) then, unless the robot has left by that time."""
+    def at(self, time_ns: int, event: Callback, argument: Any) -> None:
+        """A timer: call event(argument, time_ns) then, unless the robot has left by that time."""
         ...
 
     def uniform(self) -> float:
@@ -49,29 +50,31 @@ class Router(Protocol):
     """A routing protocol on one robot."""
 
     def submit(self, data: DataPacket, now: int) -> None:
-        """The robot itself has a message for another."""
+        """This robot is the source of a message."""
         ...
 
     def abandon(self) -> list[DataPacket]:
-        """The robot leaves: the messages that still wait for a route."""
+        """The robot leaves: messages that still waited for a route."""
         ...
 
-    def on_packet(self, packet: object, sender: int, now: int) -> None:
+    def on_packet(self, packet: object, sender: RobotId, now: int) -> None:
         """A packet arrived from a neighbour; a DataPacket already lists this robot in its path."""
         ...
 
-    def on_overheard(self, packet: object, sender: int, now: int) -> None:
-        """A control packet for another robot was heard; `sender` is the neighbour that sent it."""
+    def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
+        """A control packet for another robot was overheard; `sender` is the neighbour that sent it."""
         ...
 
-    def on_broadcast(self, packet: object, now: int) -> None:
-        """A broadcast of this robot has left its card."""
+    def on_broadcast_sent(self, packet: object, now: int) -> None:
+        """A broadcast of this robot has been transmitted."""
         ...
 
-    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
+    def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:
         """The link layer's acknowledgement of a unicast packet came."""
         ...
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:
+    def on_undeliverable(
+        self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
+    ) -> None:
         """The link layer gave a unicast packet up."""
         ...

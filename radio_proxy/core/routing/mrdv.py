@@ -3,34 +3,54 @@
 Left out, as the RFC allows: hello messages (6.9, the link layer's feedback is used), local repair
 (6.12), RREP-ACK (6.8: the link layer acknowledges every unicast RREP).
 
-Differs: the probability holds during the expanding ring search alone; requests through the whole net are
-normal ones, because waiting for three of them (20 s) before the normal discovery would outlast the team.
-After a restart a robot asks for answers of the destination alone (6.3, flag D) for DELETE_PERIOD instead
-of keeping silent so long (6.13). Requests are jittered before they are passed on (as RFC 4728 does).
+Differs: the probability holds during the expanding ring search alone; requests through the whole network
+are normal ones, because waiting for three of them (20 s) before the normal discovery would outlast the
+team. After a restart a robot lets the destination alone reply (6.3, flag D) for DELETE_PERIOD instead of
+keeping silent so long (6.13). Requests are jittered before they are passed on (as RFC 4728 does).
 """
 
 from collections import deque
 from dataclasses import dataclass, field, replace
 
-from onehop.contracts.messages import BROADCAST, DeliveryStatus
-from radio_proxy.core.data_message import SEARCHES, DataPacket
+from onehop.contracts.messages import DeliveryStatus
+from onehop.contracts.serial_numbers import following, newer, newest
+from radio_proxy.core.addresses import BROADCAST, RobotId
+from radio_proxy.core.data_message import MAX_DISCOVERIES, DataPacket
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
-from radio_proxy.core.routing.interface import Host
+from radio_proxy.core.routing.interface import NicServices
 from radio_proxy.core.routing.mrdv_packets import RREP_BYTES, RREQ_BYTES, Rerr, Rrep, Rreq, rerr_bytes
 from radio_proxy.core.routing.mrdv_table import ACTIVE_ROUTE_NS, DELETE_PERIOD_NS, MS, Route, RouteTable
-from radio_proxy.core.routing.sequence import following, freshest, newer
+
+# Timers and limits of RFC 3561, section 10, under its names.
 
 NODE_TRAVERSAL_NS = 40 * MS
+"""Time of a hop, waiting and processing included [ns]."""
+
 NET_DIAMETER = 35
+"""Most hops between two robots."""
+
 NET_TRAVERSAL_NS = 2 * NODE_TRAVERSAL_NS * NET_DIAMETER
+"""How long a request through the whole network waits for its reply [ns]."""
+
 PATH_DISCOVERY_NS = 2 * NET_TRAVERSAL_NS
+"""How long a request is remembered, lest it be passed on twice [ns]."""
+
 MY_ROUTE_NS = 2 * ACTIVE_ROUTE_NS
+"""Lifetime that a destination gives the route to itself [ns]."""
+
 TTL_START, TTL_INCREMENT, TTL_THRESHOLD = 1, 2, 7
+"""The expanding ring search: first ring, step and last ring [hops]."""
+
 TIMEOUT_BUFFER = 2
+"""Hops that the timeout of a ring allows for congestion."""
+
 RREQ_RETRIES = 2
+"""Repetitions of a request through the whole network."""
+
 RATE_LIMIT = 10
+"""RREQ_RATELIMIT and RERR_RATELIMIT: packets of each kind that a robot originates [1/s]."""
+
 SECOND_NS = 1000 * MS
-"""Timers and limits of RFC 3561, section 10."""
 
 BUFFER_MESSAGES = 64
 """Messages that wait for routes; the newest is dropped when it is full (size of RFC 4728, 4.2)."""
@@ -38,9 +58,12 @@ BUFFER_MESSAGES = 64
 
 @dataclass(slots=True, eq=False)
 class RouteDiscovery:
-    """A discovery under way. network_wide: requests sent through the whole net so far."""
+    """A discovery under way. network_wide: requests through the whole network so far.
 
-    destination: int
+    number: of the last request.
+    """
+
+    destination: RobotId
     ttl: int
     network_wide: int = 0
     number: int = 0
@@ -50,31 +73,31 @@ class RouteDiscovery:
 class MrdvRouter:
     """AODV on one robot."""
 
-    def __init__(self, host: Host, gamma_distance: float, now: int) -> None:
+    def __init__(self, nic: NicServices, gamma_distance: float, now: int) -> None:
         self.table = RouteTable()
-        self._host = host
-        self._me = host.robot
+        self._nic = nic
+        self._me = nic.robot
         self._gamma_distance = gamma_distance
-        self._sequence = host.incarnation << 16
-        self._number = host.incarnation << 16
-        self._cautious_until = now + DELETE_PERIOD_NS if host.incarnation else now
-        self._searches: dict[int, RouteDiscovery] = {}
+        self._sequence = nic.incarnation << 16
+        self._number = nic.incarnation << 16
+        self._reboot_hold_until = now + DELETE_PERIOD_NS if nic.incarnation else now
+        self._discoveries: dict[RobotId, RouteDiscovery] = {}
         self.buffered = 0
-        self._seen: dict[tuple[int, int], int] = {}
+        self._seen: dict[tuple[RobotId, int], int] = {}
         self._requests: deque[int] = deque()
         self._errors: deque[int] = deque()
-        self._blacklist: dict[int, int] = {}
+        self._blacklist: dict[RobotId, int] = {}
 
     def submit(self, data: DataPacket, now: int) -> None:
-        if data.message.destination in self._searches or not self._forward(data, now):
-            self._wait(data, now)
+        if data.message.destination in self._discoveries or not self._forward_data(data, now):
+            self._buffer(data, now)
 
     def abandon(self) -> list[DataPacket]:
-        waiting = [data for to in sorted(self._searches) for data in self._searches[to].waiting]
-        self._searches.clear()
+        waiting = [data for to in sorted(self._discoveries) for data in self._discoveries[to].waiting]
+        self._discoveries.clear()
         return waiting
 
-    def on_packet(self, packet: object, sender: int, now: int) -> None:
+    def on_packet(self, packet: object, sender: RobotId, now: int) -> None:
         if isinstance(packet, DataPacket):
             self._on_data(packet, sender, now)
         elif isinstance(packet, Rreq):
@@ -82,44 +105,46 @@ class MrdvRouter:
         elif isinstance(packet, Rrep):
             self._on_rrep(packet, sender, now)
         elif isinstance(packet, Rerr):
-            self._report(self.table.heed_error(sender, packet.lost, now), now)
-        self._flush(sender, now)
+            self._report_broken(self.table.apply_rerr(sender, packet.lost, now), now)
+        self._send_buffered(sender, now)
 
-    def on_overheard(self, packet: object, sender: int, now: int) -> None:
+    def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
         """Others' control packets say nothing that this protocol uses."""
 
-    def on_broadcast(self, packet: object, now: int) -> None:
-        """The patience with a request counts from its origination (RFC 3561, 6.3)."""
+    def on_broadcast_sent(self, packet: object, now: int) -> None:
+        """The timeout of a request counts from its origination (RFC 3561, 6.3)."""
 
-    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:  # noqa: ARG002
+    def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:  # noqa: ARG002
         self.table.refresh(next_hop, now)
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:
+    def on_undeliverable(
+        self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
+    ) -> None:
         """Link-layer feedback: the neighbour is gone (RFC 3561, 6.10 and 6.11 case i)."""
-        self._report(self.table.break_link(next_hop, now), now)
+        self._report_broken(self.table.break_link(next_hop, now), now)
         if isinstance(packet, Rrep):
             self._blacklist[next_hop] = now + RREQ_RETRIES * NET_TRAVERSAL_NS
         if not isinstance(packet, DataPacket):
             return
-        if packet.message.source == self._me and packet.message.searches < SEARCHES:
+        if packet.message.source == self._me and packet.message.discoveries < MAX_DISCOVERIES:
             self.submit(replace(packet, attempts=()), now)
         else:
-            self._host.drop(packet, cause)
+            self._nic.drop(packet, cause)
 
     # DataPacket.
 
-    def _on_data(self, data: DataPacket, sender: int, now: int) -> None:
-        self.table.meet(sender, now)
+    def _on_data(self, data: DataPacket, sender: RobotId, now: int) -> None:
+        self.table.update_neighbour(sender, now)
         self.table.refresh(data.message.source, now)
         if data.message.destination == self._me:
-            self._host.deliver(data, now)
-        elif not self._forward(data, now):
+            self._nic.deliver(data, now)
+        elif not self._forward_data(data, now):
             route = self.table.entry(data.message.destination, now)
             sequence = route.sequence if route is not None else 0
             self._send_rerr(((data.message.destination, sequence),), (sender,), now)
-            self._host.drop(data, DeliveryStatus.NO_ROUTE)
+            self._nic.drop(data, DeliveryStatus.NO_ROUTE)
 
-    def _forward(self, data: DataPacket, now: int) -> bool:
+    def _forward_data(self, data: DataPacket, now: int) -> bool:
         """Send a message along its route; False when there is none."""
         message = data.message
         route = self.table.usable(message.destination, now)
@@ -127,81 +152,81 @@ class MrdvRouter:
             return False
         self.table.refresh(message.destination, now)
         self.table.refresh(route.next_hop, now)
-        if not self._host.send(data, route.next_hop, message.msdu_bytes, "", now):
-            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
+        if not self._nic.send(data, route.next_hop, message.msdu_bytes, "", now):
+            self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
         return True
 
     # Discovery by the origin.
 
-    def _wait(self, data: DataPacket, now: int) -> None:
+    def _buffer(self, data: DataPacket, now: int) -> None:
         if self.buffered >= BUFFER_MESSAGES:
-            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
+            self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
             return
         self.buffered += 1
         destination = data.message.destination
-        data.message.begin_search(now)
-        search = self._searches.get(destination)
-        if search is not None:
-            search.waiting.append(data)
+        data.message.begin_discovery(now)
+        discovery = self._discoveries.get(destination)
+        if discovery is not None:
+            discovery.waiting.append(data)
             return
         known = self.table.entry(destination, now)
         ttl = TTL_START if known is None else min(known.hops + TTL_INCREMENT, TTL_THRESHOLD)
-        search = self._searches[destination] = RouteDiscovery(destination, ttl, waiting=[data])
-        self._ask(search, now)
+        discovery = self._discoveries[destination] = RouteDiscovery(destination, ttl, waiting=[data])
+        self._request_route(discovery, now)
 
-    def _ask(self, search: RouteDiscovery, now: int) -> None:
-        """Send the search's next request, or wait for the rate limit (RFC 3561, 6.3 and 6.4)."""
-        if self._searches.get(search.destination) is not search:
+    def _request_route(self, discovery: RouteDiscovery, now: int) -> None:
+        """Send the discovery's next request, or wait for the rate limit (RFC 3561, 6.3 and 6.4)."""
+        if self._discoveries.get(discovery.destination) is not discovery:
             return
-        wait_until = self._within_rate(self._requests, now)
+        wait_until = self._next_allowed(self._requests, now)
         if wait_until > now:
-            self._host.at(wait_until, self._ask, search)
+            self._nic.at(wait_until, self._request_route, discovery)
             return
         self._number += 1
-        search.number = self._number
+        discovery.number = self._number
         self._sequence = following(self._sequence)
-        known = self.table.entry(search.destination, now)
+        known = self.table.entry(discovery.destination, now)
         request = Rreq(
             origin=self._me,
             origin_sequence=self._sequence,
             number=self._number,
-            destination=search.destination,
+            destination=discovery.destination,
             sequence=known.sequence if known is not None and known.sequence_known else None,
             hops=0,
-            ttl=search.ttl,
-            normal=search.ttl > TTL_THRESHOLD,
-            destination_only=now < self._cautious_until,
+            ttl=discovery.ttl,
+            normal=discovery.ttl > TTL_THRESHOLD,
+            destination_only=now < self._reboot_hold_until,
         )
-        self._see(request, now)
-        self._host.send(request, BROADCAST, RREQ_BYTES, "rreq", now)
-        if search.ttl > TTL_THRESHOLD:
-            patience = NET_TRAVERSAL_NS << search.network_wide
-            search.network_wide += 1
+        self._remember(request, now)
+        self._nic.send(request, BROADCAST, RREQ_BYTES, "rreq", now)
+        if discovery.ttl > TTL_THRESHOLD:
+            timeout = NET_TRAVERSAL_NS << discovery.network_wide
+            discovery.network_wide += 1
         else:
-            patience = 2 * NODE_TRAVERSAL_NS * (search.ttl + TIMEOUT_BUFFER)
-        self._host.at(now + patience, self._on_no_answer, (search, search.number))
+            timeout = 2 * NODE_TRAVERSAL_NS * (discovery.ttl + TIMEOUT_BUFFER)
+        self._nic.at(now + timeout, self._on_no_reply, (discovery, discovery.number))
 
-    def _on_no_answer(self, asked: tuple[RouteDiscovery, int], now: int) -> None:
-        search, number = asked
-        if self._searches.get(search.destination) is not search or search.number != number:
+    def _on_no_reply(self, requested: tuple[RouteDiscovery, int], now: int) -> None:
+        discovery, number = requested
+        if self._discoveries.get(discovery.destination) is not discovery or discovery.number != number:
             return
-        if search.network_wide > RREQ_RETRIES:
-            for data in self._end_search(search, now):
-                self._host.drop(data, DeliveryStatus.NO_ROUTE)
+        if discovery.network_wide > RREQ_RETRIES:
+            for data in self._end_discovery(discovery, now):
+                self._nic.drop(data, DeliveryStatus.NO_ROUTE)
             return
-        search.ttl += TTL_INCREMENT
-        if search.ttl > TTL_THRESHOLD:
-            search.ttl = NET_DIAMETER
-        self._ask(search, now)
+        discovery.ttl += TTL_INCREMENT
+        if discovery.ttl > TTL_THRESHOLD:
+            discovery.ttl = NET_DIAMETER
+        self._request_route(discovery, now)
 
-    def _end_search(self, search: RouteDiscovery, now: int) -> list[DataPacket]:
-        del self._searches[search.destination]
-        self.buffered -= len(search.waiting)
-        for data in search.waiting:
-            data.message.end_search(now)
-        return search.waiting
+    def _end_discovery(self, discovery: RouteDiscovery, now: int) -> list[DataPacket]:
+        del self._discoveries[discovery.destination]
+        self.buffered -= len(discovery.waiting)
+        for data in discovery.waiting:
+            data.message.end_discovery(now)
+        return discovery.waiting
 
-    def _within_rate(self, sent: deque[int], now: int) -> int:
+    def _next_allowed(self, sent: deque[int], now: int) -> int:
         """When one more may be sent: now (then it counts), or later (RREQ_ and RERR_RATELIMIT)."""
         while sent and sent[0] <= now - SECOND_NS:
             sent.popleft()
@@ -212,8 +237,8 @@ class MrdvRouter:
 
     # Requests, replies and errors of others.
 
-    def _see(self, request: Rreq, now: int) -> bool:
-        """Whether a request is seen for the first time in PATH_DISCOVERY_TIME (RFC 3561, 6.5)."""
+    def _remember(self, request: Rreq, now: int) -> bool:
+        """Note a request; whether it is a new one within PATH_DISCOVERY_TIME (RFC 3561, 6.5)."""
         while self._seen and next(iter(self._seen.values())) <= now:
             del self._seen[next(iter(self._seen))]
         key = (request.origin, request.number)
@@ -222,77 +247,77 @@ class MrdvRouter:
         self._seen[key] = now + PATH_DISCOVERY_NS
         return True
 
-    def _on_rreq(self, request: Rreq, sender: int, now: int) -> None:
+    def _on_rreq(self, request: Rreq, sender: RobotId, now: int) -> None:
         if request.origin == self._me or self._blacklist.get(sender, now) > now:
             return
-        self.table.meet(sender, now)
-        if not self._see(request, now):
+        self.table.update_neighbour(sender, now)
+        if not self._remember(request, now):
             return
         hops = request.hops + 1
         lifetime = 2 * NET_TRAVERSAL_NS - 2 * hops * NODE_TRAVERSAL_NS
-        self.table.offer(request.origin, sender, hops, request.origin_sequence, now + lifetime, now)
+        self.table.update(request.origin, sender, hops, request.origin_sequence, now + lifetime, now)
         if request.destination == self._me:
             if request.sequence is not None:
-                self._sequence = freshest(self._sequence, request.sequence)
+                self._sequence = newest(self._sequence, request.sequence)
             self._reply(Rrep(request.origin, self._me, self._sequence, 0, MY_ROUTE_NS), now)
-            self._flush(request.origin, now)
+            self._send_buffered(request.origin, now)
             return
         route = self.table.usable(request.destination, now)
-        if route is not None and self._may_answer(request, route, now):
-            self._answer_for(request, route, sender, now)
+        if route is not None and self._may_reply_from_table(request, route, now):
+            self._reply_from_table(request, route, sender, now)
         elif request.ttl > 1:
-            self._pass_on(request, hops, now)
-        self._flush(request.origin, now)
+            self._forward_rreq(request, hops, now)
+        self._send_buffered(request.origin, now)
 
-    def _may_answer(self, request: Rreq, route: Route, now: int) -> bool:
-        """Whether a route in the table is fresh enough to answer with (RFC 3561, 6.6)."""
-        if request.destination_only or now < self._cautious_until or not route.sequence_known:
+    def _may_reply_from_table(self, request: Rreq, route: Route, now: int) -> bool:
+        """Whether a route in the table is fresh enough to reply with (RFC 3561, 6.6)."""
+        if request.destination_only or now < self._reboot_hold_until or not route.sequence_known:
             return False
         return request.sequence is None or not newer(request.sequence, route.sequence)
 
-    def _answer_for(self, request: Rreq, route: Route, sender: int, now: int) -> None:
-        """Answer for the destination, and tell it of the origin (RFC 3561, 6.6.2 and 6.6.3)."""
+    def _reply_from_table(self, request: Rreq, route: Route, sender: RobotId, now: int) -> None:
+        """Reply for the destination, with a gratuitous one for itself (RFC 3561, 6.6.2 and 6.6.3)."""
         route.add_precursor(sender)
         back = self.table.usable(request.origin, now)
         if back is not None:
             back.add_precursor(route.next_hop)
             known = Rrep(route.destination, request.origin, back.sequence, back.hops, back.expires - now)
-            self._host.send(known, route.next_hop, RREP_BYTES, "rrep", now)
+            self._nic.send(known, route.next_hop, RREP_BYTES, "rrep", now)
         lifetime = route.expires - now
         self._reply(Rrep(request.origin, route.destination, route.sequence, route.hops, lifetime), now)
 
-    def _pass_on(self, request: Rreq, hops: int, now: int) -> None:
+    def _forward_rreq(self, request: Rreq, hops: int, now: int) -> None:
         if not request.normal:
-            weight = gamma(self._host.remaining_distance(), self._gamma_distance)
-            if self._host.uniform() >= forwarding_probability(self._host.speed(), weight):
+            weight = gamma(self._nic.remaining_distance(), self._gamma_distance)
+            if self._nic.uniform() >= forwarding_probability(self._nic.speed(), weight):
                 return
         sequence = request.sequence
         known = self.table.entry(request.destination, now)
         if known is not None and known.sequence_known:
-            sequence = known.sequence if sequence is None else freshest(sequence, known.sequence)
+            sequence = known.sequence if sequence is None else newest(sequence, known.sequence)
         onward = replace(
             request,
             hops=hops,
             ttl=request.ttl - 1,
             sequence=sequence,
-            destination_only=request.destination_only or now < self._cautious_until,
+            destination_only=request.destination_only or now < self._reboot_hold_until,
         )
-        jitter = round(self._host.uniform() * BROADCAST_JITTER_NS)
-        self._host.at(now + jitter, self._send_rreq, onward)
+        jitter = round(self._nic.uniform() * BROADCAST_JITTER_NS)
+        self._nic.at(now + jitter, self._send_rreq, onward)
 
     def _send_rreq(self, request: Rreq, now: int) -> None:
-        self._host.send(request, BROADCAST, RREQ_BYTES, "rreq", now)
+        self._nic.send(request, BROADCAST, RREQ_BYTES, "rreq", now)
 
     def _reply(self, reply: Rrep, now: int) -> None:
         """Send a reply one hop back towards the origin of its request."""
         back = self.table.usable(reply.origin, now)
         if back is not None:
-            self._host.send(reply, back.next_hop, RREP_BYTES, "rrep", now)
+            self._nic.send(reply, back.next_hop, RREP_BYTES, "rrep", now)
 
-    def _on_rrep(self, reply: Rrep, sender: int, now: int) -> None:
-        self.table.meet(sender, now)
+    def _on_rrep(self, reply: Rrep, sender: RobotId, now: int) -> None:
+        self.table.update_neighbour(sender, now)
         hops = reply.hops + 1
-        taken = reply.destination != self._me and self.table.offer(
+        taken = reply.destination != self._me and self.table.update(
             reply.destination, sender, hops, reply.sequence, now + reply.lifetime, now
         )
         if taken and reply.origin != self._me:
@@ -302,29 +327,29 @@ class MrdvRouter:
                 forward.add_precursor(back.next_hop)
                 back.add_precursor(forward.next_hop)
                 back.expires = max(back.expires, now + ACTIVE_ROUTE_NS)
-                self._host.send(replace(reply, hops=hops), back.next_hop, RREP_BYTES, "rrep", now)
-        self._flush(reply.destination, now)
+                self._nic.send(replace(reply, hops=hops), back.next_hop, RREP_BYTES, "rrep", now)
+        self._send_buffered(reply.destination, now)
 
-    def _flush(self, destination: int, now: int) -> None:
-        """Send what waited for a route that is there now."""
-        search = self._searches.get(destination)
-        if search is not None and self.table.usable(destination, now) is not None:
-            for data in self._end_search(search, now):
+    def _send_buffered(self, destination: RobotId, now: int) -> None:
+        """Send the messages that waited for a route that is there now."""
+        discovery = self._discoveries.get(destination)
+        if discovery is not None and self.table.usable(destination, now) is not None:
+            for data in self._end_discovery(discovery, now):
                 self.submit(data, now)
 
-    def _report(self, broken: list[Route], now: int) -> None:
-        """Tell the precursors of routes that died (RFC 3561, 6.11)."""
-        told = [route for route in broken if route.precursors]
-        listeners = tuple(sorted({robot for route in told for robot in route.precursors}))
-        if told:
-            self._send_rerr(tuple((r.destination, r.sequence) for r in told), listeners, now)
+    def _report_broken(self, broken: list[Route], now: int) -> None:
+        """Send an error to the precursors of routes that broke (RFC 3561, 6.11)."""
+        in_use = [route for route in broken if route.precursors]
+        precursors = tuple(sorted({robot for route in in_use for robot in route.precursors}))
+        if in_use:
+            self._send_rerr(tuple((r.destination, r.sequence) for r in in_use), precursors, now)
         for route in broken:
             route.precursors.clear()
 
     def _send_rerr(
-        self, lost: tuple[tuple[int, int], ...], listeners: tuple[int, ...], now: int
+        self, lost: tuple[tuple[RobotId, int], ...], receivers: tuple[RobotId, ...], now: int
     ) -> None:
-        if self._within_rate(self._errors, now) > now:
+        if self._next_allowed(self._errors, now) > now:
             return
-        target = listeners[0] if len(listeners) == 1 else BROADCAST
-        self._host.send(Rerr(lost), target, rerr_bytes(len(lost)), "rerr", now)
+        target = receivers[0] if len(receivers) == 1 else BROADCAST
+        self._nic.send(Rerr(lost), target, rerr_bytes(len(lost)), "rerr", now)

@@ -1,10 +1,15 @@
-"""Control packets of AODV with their sizes on the air (RFC 3561, section 5; 28 B of IP and UDP)."""
+"""Control packets of AODV with their sizes (RFC 3561, section 5; 28 B of IP and UDP)."""
 
 from dataclasses import dataclass
 
+from radio_proxy.core.addresses import RobotId
+
 IP_UDP_BYTES = 28
+"""Headers of IP (20 B) and UDP (8 B), which carry AODV [B]."""
+
 RREQ_BYTES = 24 + IP_UDP_BYTES
 RREP_BYTES = 20 + IP_UDP_BYTES
+"""Sizes of ROUTE REQUEST and ROUTE REPLY (RFC 3561, 5.1 and 5.2) [B]."""
 
 
 def rerr_bytes(destinations: int) -> int:
@@ -16,13 +21,13 @@ def rerr_bytes(destinations: int) -> int:
 class Rreq:
     """ROUTE REQUEST. sequence: last known of the destination, None for unknown.
 
-    normal: pass on without MRDV's probability. destination_only: nobody may answer from its table.
+    normal: pass on without MRDV's probability. destination_only: nobody may reply from its table.
     """
 
-    origin: int
+    origin: RobotId
     origin_sequence: int
     number: int
-    destination: int
+    destination: RobotId
     sequence: int | None
     hops: int
     ttl: int
@@ -34,8 +39,8 @@ class Rreq:
 class Rrep:
     """ROUTE REPLY on its way to `origin`: its sender is `hops` from destination; lifetime [ns]."""
 
-    origin: int
-    destination: int
+    origin: RobotId
+    destination: RobotId
     sequence: int
     hops: int
     lifetime: int
@@ -45,4 +50,4 @@ class Rrep:
 class Rerr:
     """ROUTE ERROR: (destination, sequence) of everything that its sender cannot reach any more."""
 
-    lost: tuple[tuple[int, int], ...]
+    lost: tuple[tuple[RobotId, int], ...]

@@ -2,30 +2,36 @@
 
 from dataclasses import dataclass, field
 
-from radio_proxy.core.routing.sequence import following, newer
+from onehop.contracts.serial_numbers import following, newer
+from radio_proxy.core.addresses import RobotId
 
 MS = 1_000_000
+"""Nanoseconds in a millisecond."""
+
 ACTIVE_ROUTE_NS = 3000 * MS
-"""ACTIVE_ROUTE_TIMEOUT (RFC 3561, section 10)."""
+"""ACTIVE_ROUTE_TIMEOUT: lifetime of a route without use (RFC 3561, section 10) [ns]."""
 
 DELETE_PERIOD_NS = 15_000 * MS
-"""How long a dead entry keeps its sequence number (K * ACTIVE_ROUTE_TIMEOUT, K = 5)."""
+"""DELETE_PERIOD: how long an invalid entry keeps its sequence number (5 * ACTIVE_ROUTE_TIMEOUT) [ns]."""
 
 
 @dataclass(slots=True, eq=False)
 class Route:
-    """Way to one destination. expires [ns]; sequence_known: RFC's "valid sequence number" flag."""
+    """Route to one destination. expires: when it becomes invalid, or, invalid, when it is deleted [ns].
 
-    destination: int
-    next_hop: int
+    sequence_known: the RFC's "valid sequence number" flag.
+    """
+
+    destination: RobotId
+    next_hop: RobotId
     hops: int
     sequence: int
     sequence_known: bool
     expires: int
     valid: bool = True
-    precursors: list[int] = field(default_factory=list)
+    precursors: list[RobotId] = field(default_factory=list)
 
-    def add_precursor(self, robot: int) -> None:
+    def add_precursor(self, robot: RobotId) -> None:
         """Remember a neighbour that may send through here (RFC 3561, 6.2)."""
         if robot not in self.precursors:
             self.precursors.append(robot)
@@ -35,31 +41,31 @@ class RouteTable:
     """All routes of one robot; never more than one a destination."""
 
     def __init__(self) -> None:
-        self._routes: dict[int, Route] = {}
+        self._routes: dict[RobotId, Route] = {}
 
-    def entry(self, destination: int, now: int) -> Route | None:
-        """What is known of a destination, dead or alive, until DELETE_PERIOD after its death."""
+    def entry(self, destination: RobotId, now: int) -> Route | None:
+        """The entry of a destination, valid or invalid, until DELETE_PERIOD is over."""
         route = self._routes.get(destination)
         if route is None:
             return None
         if route.valid and route.expires <= now:
-            self._kill(route, route.sequence, route.expires)
+            self._invalidate(route, route.sequence, route.expires)
         if not route.valid and route.expires <= now:
             del self._routes[destination]
             return None
         return route
 
-    def usable(self, destination: int, now: int) -> Route | None:
-        """The live route to a destination."""
+    def usable(self, destination: RobotId, now: int) -> Route | None:
+        """The valid route to a destination."""
         route = self.entry(destination, now)
         return route if route is not None and route.valid else None
 
-    def offer(
-        self, destination: int, next_hop: int, hops: int, sequence: int, expires: int, now: int
+    def update(
+        self, destination: RobotId, next_hop: RobotId, hops: int, sequence: int, expires: int, now: int
     ) -> bool:
         """Take over a route with a sequence number if it is better (RFC 3561, 6.2 and 6.7).
 
-        Better is: newer, or as new while ours is dead or longer, or ours has no number. A live route
+        Better is: newer, or as new while ours is invalid or longer, or ours has no number. A valid route
         that is confirmed keeps its longer lifetime. Returns whether the table now leads that way.
         """
         route = self.entry(destination, now)
@@ -80,8 +86,8 @@ class RouteTable:
         route.valid = True
         return True
 
-    def meet(self, neighbour: int, now: int) -> None:
-        """A neighbour was heard: there is a way of one hop to it (RFC 3561, 6.2).
+    def update_neighbour(self, neighbour: RobotId, now: int) -> None:
+        """A packet came from a neighbour: there is a route of one hop to it (RFC 3561, 6.2).
 
         Differs: a sequence number that was known stays in force, because forgetting it would let an
         older route in, which may lead back here.
@@ -94,36 +100,40 @@ class RouteTable:
         route.expires = max(route.expires, expires) if route.valid else expires
         route.next_hop, route.hops, route.valid = neighbour, 1, True
 
-    def refresh(self, destination: int, now: int) -> None:
+    def refresh(self, destination: RobotId, now: int) -> None:
         """A route that carries data stays alive (RFC 3561, 6.2)."""
         route = self.usable(destination, now)
         if route is not None:
             route.expires = max(route.expires, now + ACTIVE_ROUTE_NS)
 
-    def break_link(self, neighbour: int, now: int) -> list[Route]:
-        """The neighbour is out of reach: every route through it dies, one number newer (6.11)."""
+    def break_link(self, neighbour: RobotId, now: int) -> list[Route]:
+        """The neighbour is out of reach: every route through it is invalid, one number newer (6.11)."""
         broken = self._through(neighbour, now)
         for route in broken:
-            self._kill(route, following(route.sequence) if route.sequence_known else route.sequence, now)
+            self._invalidate(
+                route, following(route.sequence) if route.sequence_known else route.sequence, now
+            )
         return broken
 
-    def heed_error(self, neighbour: int, lost: tuple[tuple[int, int], ...], now: int) -> list[Route]:
-        """Routes through a neighbour that says it cannot reach these (destination, sequence) (6.11)."""
+    def apply_rerr(
+        self, neighbour: RobotId, lost: tuple[tuple[RobotId, int], ...], now: int
+    ) -> list[Route]:
+        """A neighbour lost (destination, sequence): routes to these through it become invalid (6.11)."""
         numbers = dict(lost)
         broken = [route for route in self._through(neighbour, now) if route.destination in numbers]
         for route in broken:
-            self._kill(route, numbers[route.destination], now)
+            self._invalidate(route, numbers[route.destination], now)
         return broken
 
-    def destinations(self) -> tuple[int, ...]:
+    def destinations(self) -> tuple[RobotId, ...]:
         """Everything that has an entry, sorted."""
         return tuple(sorted(self._routes))
 
-    def _through(self, neighbour: int, now: int) -> list[Route]:
+    def _through(self, neighbour: RobotId, now: int) -> list[Route]:
         found = (self.usable(destination, now) for destination in self.destinations())
         return [route for route in found if route is not None and route.next_hop == neighbour]
 
-    def _kill(self, route: Route, sequence: int, now: int) -> None:
+    def _invalidate(self, route: Route, sequence: int, now: int) -> None:
         route.valid = False
         route.sequence = sequence
         route.expires = now + DELETE_PERIOD_NS

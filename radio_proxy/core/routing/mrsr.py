@@ -4,20 +4,21 @@ Left out, as the RFC allows: flow state, automatic route shortening, piggybackin
 the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
 
 Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
-flag for normal forwarding. At the origin a message is searched for twice at most, and its time in the
+flag for normal forwarding. The source discovers a route for a message twice at most, and its time in the
 send buffer counts from when it was handed over. A robot that waits to reply out of its cache listens for
 others' replies, not for the origin's first data (8.2.5), and routes are learnt from others' replies and
-errors but not from their data (3.3.1), because control packets are the only frames of others that a card
-hands up here. A target answers the copies of a request that came no farther than the first
-one, because in one cell every neighbour passes one on.
+errors but not from their data (3.3.1), because control packets are the only frames of others that a NIC
+hands up here. A target replies to the copies of a request that came no farther than the first one,
+because in one cell every neighbour passes one on.
 """
 
 from dataclasses import dataclass, field, replace
 
-from onehop.contracts.messages import BROADCAST, DeliveryStatus
-from radio_proxy.core.data_message import SEARCHES, DataPacket
+from onehop.contracts.messages import DeliveryStatus
+from radio_proxy.core.addresses import BROADCAST, RobotId
+from radio_proxy.core.data_message import MAX_DISCOVERIES, DataPacket
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
-from radio_proxy.core.routing.interface import Host
+from radio_proxy.core.routing.interface import NicServices
 from radio_proxy.core.routing.mrsr_cache import RouteCache
 from radio_proxy.core.routing.mrsr_packets import (
     Rerr,
@@ -29,59 +30,83 @@ from radio_proxy.core.routing.mrsr_packets import (
 )
 
 MS = 1_000_000
+"""Nanoseconds in a millisecond."""
+
+# Timers and limits of RFC 4728, section 9.
+
 NONPROPAGATING_NS = 30 * MS
+"""NonpropRequestTimeout: how long the request to the neighbours alone waits for its reply [ns]."""
+
 REQUEST_PERIOD_NS = 500 * MS
+"""RequestPeriod: the same of the first request through the whole network; it doubles then [ns]."""
+
 MAX_REQUEST_PERIOD_NS = 10_000 * MS
+"""MaxRequestPeriod: up to which it doubles [ns]."""
+
 MAX_REQUESTS = 16
+"""MaxRequestRexmt: repetitions of a request in one discovery."""
+
 REQUEST_IDS = 16
+"""RequestTableIds: requests of one robot that are remembered."""
+
 HOP_LIMIT = 255
+"""DiscoveryHopLimit of a request through the whole network [hops]."""
+
 SEND_BUFFER = 64
+"""Messages that wait for routes; the newest is dropped when it is full (4.2 leaves the size open)."""
+
 SEND_BUFFER_TIMEOUT_NS = 30_000 * MS
+"""SendBufferTimeout [ns]."""
+
 MAX_SALVAGE = 15
+"""MaxSalvageCount: how often one message is sent along another route by a robot on its way."""
+
 BLACKLIST_NS = 5000 * MS
-"""Timers and limits of RFC 4728, section 9 (the blacklist's is left to the implementation there)."""
+"""How long a neighbour that acknowledges no replies stays on the blacklist (4.6 leaves it open) [ns]."""
 
 
 @dataclass(slots=True, eq=False)
 class RouteDiscovery:
-    """A discovery under way. sent: requests so far; number, patience [ns]: of the last one."""
+    """A discovery under way. sent: requests so far; number, timeout [ns]: of the last one."""
 
-    target: int
+    target: RobotId
     sent: int = 0
     number: int = 0
-    patience: int = 0
+    timeout: int = 0
     waiting: list[DataPacket] = field(default_factory=list)
 
 
 class MrsrRouter:
     """DSR on one robot."""
 
-    def __init__(self, host: Host, gamma_distance: float) -> None:
-        self.cache = RouteCache(host.robot)
-        self._host = host
-        self._me = host.robot
+    def __init__(self, nic: NicServices, gamma_distance: float) -> None:
+        self.cache = RouteCache(nic.robot)
+        self._nic = nic
+        self._me = nic.robot
         self._gamma_distance = gamma_distance
-        self._number = host.incarnation << 16
-        self._searches: dict[int, RouteDiscovery] = {}
+        self._number = nic.incarnation << 16
+        self._discoveries: dict[RobotId, RouteDiscovery] = {}
         self.buffered = 0
-        self._seen: dict[int, dict[int, int]] = {}
-        self._blacklist: dict[int, int] = {}
-        self._pending: dict[tuple[int, int], int] = {}
+        self._seen: dict[RobotId, dict[int, int]] = {}
+        self._blacklist: dict[RobotId, int] = {}
+        self._pending_replies: dict[tuple[RobotId, int], int] = {}
 
     def submit(self, data: DataPacket, now: int) -> None:
-        if data.message.destination in self._searches or not self._send_along_cache(data, now):
-            self._wait(data, now)
+        if data.message.destination in self._discoveries or not self._send_along_cache(data, now):
+            self._buffer(data, now)
 
     def abandon(self) -> list[DataPacket]:
-        waiting = [data for target in sorted(self._searches) for data in self._searches[target].waiting]
-        self._searches.clear()
+        waiting = [
+            data for target in sorted(self._discoveries) for data in self._discoveries[target].waiting
+        ]
+        self._discoveries.clear()
         return waiting
 
     def remembered_requests(self) -> int:
         """How many requests of others are remembered (at most 16 a robot, RFC 4728, 4.3)."""
         return sum(len(seen) for seen in self._seen.values())
 
-    def on_packet(self, packet: object, sender: int, now: int) -> None:
+    def on_packet(self, packet: object, sender: RobotId, now: int) -> None:
         if isinstance(packet, DataPacket):
             self._on_data(packet, now)
         elif isinstance(packet, Rreq):
@@ -89,39 +114,41 @@ class MrsrRouter:
         elif isinstance(packet, Rrep):
             self._on_rrep(packet, now)
         elif isinstance(packet, Rerr):
-            self.cache.forget_link(packet.a, packet.b)
+            self.cache.remove_link(packet.a, packet.b)
             if packet.back[-1] != self._me:
-                self._host.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
+                self._nic.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
 
-    def on_overheard(self, packet: object, sender: int, now: int) -> None:
+    def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
         """Others' replies and errors teach as one's own do (RFC 4728, 3.3.1).
 
         A reply that is as short as the one that waits here makes that one needless (8.2.5).
         """
         if isinstance(packet, Rrep):
-            mine = self._pending.get((packet.found[0], packet.number))
+            mine = self._pending_replies.get((packet.found[0], packet.number))
             if mine is not None and len(packet.found) <= mine:
-                del self._pending[packet.found[0], packet.number]
+                del self._pending_replies[packet.found[0], packet.number]
             here = packet.found.index(sender)
             self.cache.add((self._me, *packet.found[here:]), now)
             self.cache.add((self._me, *packet.found[here::-1]), now)
-            self._flush(now)
+            self._send_buffered(now)
         elif isinstance(packet, Rerr):
-            self.cache.forget_link(packet.a, packet.b)
+            self.cache.remove_link(packet.a, packet.b)
 
-    def on_broadcast(self, packet: object, now: int) -> None:
-        """The patience with a request counts from when it is on the air."""
+    def on_broadcast_sent(self, packet: object, now: int) -> None:
+        """The timeout of a request counts from its transmission."""
         if isinstance(packet, Rreq) and packet.origin == self._me:
-            search = self._searches.get(packet.target)
-            if search is not None and search.number == packet.number:
-                self._host.at(now + search.patience, self._ask, search)
+            discovery = self._discoveries.get(packet.target)
+            if discovery is not None and discovery.number == packet.number:
+                self._nic.at(now + discovery.timeout, self._request_route, discovery)
 
-    def on_acknowledged(self, packet: object, next_hop: int, now: int) -> None:
+    def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:
         """A confirmed link needs no mark: a path holds until it fails or is too old."""
 
-    def on_undeliverable(self, packet: object, next_hop: int, cause: DeliveryStatus, now: int) -> None:
+    def on_undeliverable(
+        self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
+    ) -> None:
         """The link is broken: forget it, tell the source, salvage (RFC 4728, 8.3.4 and 8.3.6)."""
-        self.cache.forget_link(self._me, next_hop)
+        self.cache.remove_link(self._me, next_hop)
         if isinstance(packet, Rrep):
             self._blacklist[next_hop] = now + BLACKLIST_NS
         if not isinstance(packet, DataPacket):
@@ -131,14 +158,14 @@ class MrsrRouter:
             back = without_loops(packet.path)[::-1]
             error = Rerr(self._me, next_hop, back)
             if len(back) > 1:
-                self._host.send(error, back[1], error.size_bytes, "rerr", now)
+                self._nic.send(error, back[1], error.size_bytes, "rerr", now)
         again = replace(packet, attempts=packet.attempts[:-1], salvaged=packet.salvaged + 1)
         if again.salvaged <= MAX_SALVAGE and self._send_along_cache(again, now):
             return
-        if at_origin and packet.message.searches < SEARCHES:
-            self._wait(again, now)
+        if at_origin and packet.message.discoveries < MAX_DISCOVERIES:
+            self._buffer(again, now)
         else:
-            self._host.drop(packet, cause)
+            self._nic.drop(packet, cause)
 
     # DataPacket.
 
@@ -152,120 +179,120 @@ class MrsrRouter:
 
     def _send_on(self, data: DataPacket, now: int) -> None:
         size = data.message.msdu_bytes + source_route_bytes(data.route)
-        if not self._host.send(data, after(data.route, self._me), size, "", now):
-            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
+        if not self._nic.send(data, after(data.route, self._me), size, "", now):
+            self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
 
     def _on_data(self, data: DataPacket, now: int) -> None:
-        self._learn(data.route, now)
+        self._cache_route(data.route, now)
         if data.message.destination == self._me:
-            self._host.deliver(data, now)
+            self._nic.deliver(data, now)
         else:
             self._send_on(data, now)
 
-    def _learn(self, route: tuple[int, ...], now: int) -> None:
+    def _cache_route(self, route: tuple[RobotId, ...], now: int) -> None:
         """Cache both directions of a route that lists this robot (RFC 4728, 8.1.4)."""
         if self._me in route:
             here = route.index(self._me)
             if here + 1 < len(route):
                 self.cache.add(route[here:], now)
             self.cache.add(route[here::-1], now)
-            self._flush(now)
+            self._send_buffered(now)
 
     # Discovery by the origin.
 
-    def _wait(self, data: DataPacket, now: int) -> None:
+    def _buffer(self, data: DataPacket, now: int) -> None:
         if self.buffered >= SEND_BUFFER:
-            self._host.drop(data, DeliveryStatus.QUEUE_FULL)
+            self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
             return
         self.buffered += 1
-        data.message.begin_search(now)
+        data.message.begin_discovery(now)
         deadline = data.message.offered + SEND_BUFFER_TIMEOUT_NS
-        self._host.at(max(now, deadline), self._on_waited_too_long, data)
+        self._nic.at(max(now, deadline), self._on_buffer_timeout, data)
         target = data.message.destination
-        search = self._searches.get(target)
-        if search is not None:
-            search.waiting.append(data)
+        discovery = self._discoveries.get(target)
+        if discovery is not None:
+            discovery.waiting.append(data)
             return
-        search = self._searches[target] = RouteDiscovery(target, waiting=[data])
-        self._ask(search, now)
+        discovery = self._discoveries[target] = RouteDiscovery(target, waiting=[data])
+        self._request_route(discovery, now)
 
-    def _ask(self, search: RouteDiscovery, now: int) -> None:
-        """The next request: the neighbours first, then the net, ever more rarely (RFC 4728, 8.2.1)."""
-        if self._searches.get(search.target) is not search:
+    def _request_route(self, discovery: RouteDiscovery, now: int) -> None:
+        """The next request: to the neighbours, then to all, ever more rarely (RFC 4728, 8.2.1)."""
+        if self._discoveries.get(discovery.target) is not discovery:
             return
-        if search.sent > MAX_REQUESTS:
-            self._give_up(list(search.waiting), now)
+        if discovery.sent > MAX_REQUESTS:
+            self._give_up(list(discovery.waiting), now)
             return
         self._number += 1
-        first = search.sent == 0
+        first = discovery.sent == 0
         request = Rreq(
             number=self._number,
-            target=search.target,
+            target=discovery.target,
             route=(self._me,),
             ttl=1 if first else HOP_LIMIT,
-            normal=search.sent > 1,
+            normal=discovery.sent > 1,
         )
-        period = REQUEST_PERIOD_NS << max(0, search.sent - 1)
-        search.sent += 1
-        search.number = self._number
-        search.patience = NONPROPAGATING_NS if first else min(period, MAX_REQUEST_PERIOD_NS)
-        if not self._host.send(request, BROADCAST, request.size_bytes, "rreq", now):
-            self._host.at(now + search.patience, self._ask, search)
+        period = REQUEST_PERIOD_NS << max(0, discovery.sent - 1)
+        discovery.sent += 1
+        discovery.number = self._number
+        discovery.timeout = NONPROPAGATING_NS if first else min(period, MAX_REQUEST_PERIOD_NS)
+        if not self._nic.send(request, BROADCAST, request.size_bytes, "rreq", now):
+            self._nic.at(now + discovery.timeout, self._request_route, discovery)
 
-    def _on_waited_too_long(self, data: DataPacket, now: int) -> None:
-        search = self._searches.get(data.message.destination)
-        if search is not None and data in search.waiting:
+    def _on_buffer_timeout(self, data: DataPacket, now: int) -> None:
+        discovery = self._discoveries.get(data.message.destination)
+        if discovery is not None and data in discovery.waiting:
             self._give_up([data], now)
 
     def _give_up(self, waiting: list[DataPacket], now: int) -> None:
         for data in waiting:
-            self._take_out(data, now)
-            self._host.drop(data, DeliveryStatus.NO_ROUTE)
+            self._unbuffer(data, now)
+            self._nic.drop(data, DeliveryStatus.NO_ROUTE)
 
-    def _take_out(self, data: DataPacket, now: int) -> None:
+    def _unbuffer(self, data: DataPacket, now: int) -> None:
         """A message leaves the send buffer; with the last one its discovery ends."""
-        search = self._searches[data.message.destination]
-        search.waiting.remove(data)
-        if not search.waiting:
-            del self._searches[search.target]
+        discovery = self._discoveries[data.message.destination]
+        discovery.waiting.remove(data)
+        if not discovery.waiting:
+            del self._discoveries[discovery.target]
         self.buffered -= 1
-        data.message.end_search(now)
+        data.message.end_discovery(now)
 
-    def _flush(self, now: int) -> None:
+    def _send_buffered(self, now: int) -> None:
         """Send whatever waited for a route that the cache has now (RFC 4728, 8.2.6)."""
-        if not self._searches:
+        if not self._discoveries:
             return
-        for target in sorted(self._searches):
+        for target in sorted(self._discoveries):
             if self.cache.find(target, now) is not None:
-                found = tuple(self._searches[target].waiting)
+                found = tuple(self._discoveries[target].waiting)
                 for data in found:
-                    self._take_out(data, now)
+                    self._unbuffer(data, now)
                 for data in found:
                     self.submit(data, now)
 
     # Requests and replies of others.
 
-    def _on_rreq(self, request: Rreq, sender: int, now: int) -> None:
+    def _on_rreq(self, request: Rreq, sender: RobotId, now: int) -> None:
         if self._me in request.route or self._blacklist.get(sender, now) > now:
             return
         route = (*request.route, self._me)
-        self._learn(route, now)
+        self._cache_route(route, now)
         first_length = self._first_length(request, len(route))
         if request.target == self._me:
             if not first_length or len(route) <= first_length:
-                delay = round(self._host.uniform() * BROADCAST_JITTER_NS)
-                self._host.at(now + delay, self._send_rrep, Rrep(request.number, route, route[::-1]))
+                delay = round(self._nic.uniform() * BROADCAST_JITTER_NS)
+                self._nic.at(now + delay, self._send_rrep, Rrep(request.number, route, route[::-1]))
             return
         if first_length:
             return
         cached = self.cache.find(request.target, now)
         if cached is not None and not set(request.route) & set(cached):
             reply = Rrep(request.number, (*request.route, *cached), route[::-1])
-            self._pending[request.origin, request.number] = len(reply.found)
-            wait = BROADCAST_JITTER_NS * (len(reply.found) - 2 + self._host.uniform())
-            self._host.at(now + round(wait), self._send_unless_needless, reply)
+            self._pending_replies[request.origin, request.number] = len(reply.found)
+            wait = BROADCAST_JITTER_NS * (len(reply.found) - 2 + self._nic.uniform())
+            self._nic.at(now + round(wait), self._send_unless_cancelled, reply)
         elif request.ttl > 1:
-            self._pass_on(replace(request, route=route, ttl=request.ttl - 1), now)
+            self._forward_rreq(replace(request, route=route, ttl=request.ttl - 1), now)
 
     def _first_length(self, request: Rreq, length: int) -> int:
         """Length of the route by which this request came first; 0 when it has not come before."""
@@ -277,24 +304,24 @@ class MrsrRouter:
             del seen[next(iter(seen))]
         return first
 
-    def _pass_on(self, request: Rreq, now: int) -> None:
+    def _forward_rreq(self, request: Rreq, now: int) -> None:
         if not request.normal:
-            weight = gamma(self._host.remaining_distance(), self._gamma_distance)
-            if self._host.uniform() >= forwarding_probability(self._host.speed(), weight):
+            weight = gamma(self._nic.remaining_distance(), self._gamma_distance)
+            if self._nic.uniform() >= forwarding_probability(self._nic.speed(), weight):
                 return
-        self._host.at(now + round(self._host.uniform() * BROADCAST_JITTER_NS), self._send_rreq, request)
+        self._nic.at(now + round(self._nic.uniform() * BROADCAST_JITTER_NS), self._send_rreq, request)
 
     def _send_rreq(self, request: Rreq, now: int) -> None:
-        self._host.send(request, BROADCAST, request.size_bytes, "rreq", now)
+        self._nic.send(request, BROADCAST, request.size_bytes, "rreq", now)
 
-    def _send_unless_needless(self, reply: Rrep, now: int) -> None:
-        if self._pending.pop((reply.found[0], reply.number), None) is not None:
+    def _send_unless_cancelled(self, reply: Rrep, now: int) -> None:
+        if self._pending_replies.pop((reply.found[0], reply.number), None) is not None:
             self._send_rrep(reply, now)
 
     def _send_rrep(self, reply: Rrep, now: int) -> None:
-        self._host.send(reply, after(reply.back, self._me), reply.size_bytes, "rrep", now)
+        self._nic.send(reply, after(reply.back, self._me), reply.size_bytes, "rrep", now)
 
     def _on_rrep(self, reply: Rrep, now: int) -> None:
-        self._learn(reply.found, now)
+        self._cache_route(reply.found, now)
         if reply.back[-1] != self._me:
             self._send_rrep(reply, now)

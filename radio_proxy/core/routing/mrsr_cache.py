@@ -1,20 +1,22 @@
 """The route cache of DSR: whole paths, several a destination (RFC 4728, 4.1)."""
 
+from radio_proxy.core.addresses import RobotId
+
 CACHE_TIMEOUT_NS = 300 * 1_000_000_000
 """RouteCacheTimeout (RFC 4728, section 9)."""
 
 PATHS_PER_DESTINATION = 4
 """Bound of the cache; longer and older paths make room."""
 
-Path = tuple[int, ...]
+Path = tuple[RobotId, ...]
 
 
 class RouteCache:
     """Paths that begin at one robot: when each expires [ns], by destination."""
 
-    def __init__(self, robot: int) -> None:
+    def __init__(self, robot: RobotId) -> None:
         self._robot = robot
-        self._paths: dict[int, dict[Path, int]] = {}
+        self._paths: dict[RobotId, dict[Path, int]] = {}
 
     def add(self, path: Path, now: int) -> None:
         """Learn a path to everyone on it; one with a loop or from elsewhere is refused."""
@@ -26,7 +28,7 @@ class RouteCache:
             if len(known) > PATHS_PER_DESTINATION:
                 del known[_ranked(known)[-1]]
 
-    def find(self, destination: int, now: int) -> Path | None:
+    def find(self, destination: RobotId, now: int) -> Path | None:
         """The best path to a destination: the shortest, the newest among equals."""
         known = self._paths.get(destination)
         if known is not None:
@@ -35,7 +37,7 @@ class RouteCache:
                     return path
         return None
 
-    def forget_link(self, a: int, b: int) -> None:
+    def remove_link(self, a: RobotId, b: RobotId) -> None:
         """Drop every path that uses the broken link in either direction (RFC 4728, 8.3.5).
 
         The part of a path before the break stands under its own destination.

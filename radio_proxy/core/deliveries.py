@@ -1,0 +1,101 @@
+"""What becomes of each data message: its verdict, and the reception if it arrived.
+
+An acknowledgement that is lost leaves a copy of a message with two robots. A message is delivered with
+the first copy that arrives, and lost when its last copy is given up.
+"""
+
+from onehop.contracts.messages import (
+    Carriage,
+    DeliveryStatus,
+    Inbox,
+    RadioRecord,
+    Reception,
+    Truth,
+    Verdict,
+)
+from radio_proxy.core.addresses import BROADCAST, RobotId
+from radio_proxy.core.data_message import DataMessage, DataPacket
+
+
+class Deliveries:
+    """Verdicts and receptions since the last tick. present: robots whose NICs are up, sorted."""
+
+    def __init__(self) -> None:
+        self.present: tuple[RobotId, ...] = ()
+        self._verdicts: list[Verdict] = []
+        self._receptions: list[tuple[int, int, int, RobotId, Reception]] = []
+        self._control_bytes: dict[str, int] = {}
+
+    def carriage(self, truth: Truth, control_bytes: dict[str, int]) -> Carriage:
+        """What the radio says at the end of a tick; control_bytes: what routing has cost so far [B]."""
+        tick, time_ns = truth.tick, truth.time_ns
+        inboxes = {presence.robot: Inbox(tick, time_ns, ()) for presence in truth.present}
+        if self._receptions:
+            self._receptions.sort(key=lambda reception: reception[:4])
+            received: dict[RobotId, list[Reception]] = {}
+            for _, _, _, robot, reception in self._receptions:
+                received.setdefault(robot, []).append(reception)
+            self._receptions = []
+            for robot in sorted(received):
+                inboxes[robot] = Inbox(tick, time_ns, tuple(received[robot]))
+        verdicts = tuple(self._verdicts)
+        self._verdicts = []
+        if control_bytes != self._control_bytes:
+            self._control_bytes = dict(sorted(control_bytes.items()))
+        return Carriage(inboxes, RadioRecord(tick, time_ns, verdicts, self._control_bytes))
+
+    def deliver(self, data: DataPacket, now: int) -> None:
+        """A copy reached its destination; a second one is dropped."""
+        message = data.message
+        if not message.has_verdict:
+            message.has_verdict = True
+            self.record(data, message.destination, DeliveryStatus.DELIVERED, now)
+        self.release_copy(message)
+
+    def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
+        """A copy is given up. Of several copies the one that came farthest says why it was lost."""
+        loss = data.message.loss
+        if loss is None or len(data.path) >= len(loss[0].path):
+            data.message.loss = (data, status)
+        self.release_copy(data.message)
+
+    def drop_with_holder(self, data: DataPacket, holder: RobotId) -> None:
+        """A copy is lost because the robot that held it left the mission."""
+        at_source = holder == data.message.source
+        self.drop(data, DeliveryStatus.SENDER_GONE if at_source else DeliveryStatus.RELAY_GONE)
+
+    def release_copy(self, message: DataMessage) -> None:
+        """A robot holds the message no more; if it was the last one, the message is lost."""
+        message.copies -= 1
+        if message.has_verdict or message.copies > 0:
+            return
+        message.has_verdict = True
+        assert message.loss is not None
+        data, status = message.loss
+        if message.destination == BROADCAST:
+            for robot in self.present:
+                if robot != message.source:
+                    self.record(data, robot, status, -1)
+            return
+        if status is not DeliveryStatus.SENDER_GONE and message.destination not in self.present:
+            status = DeliveryStatus.RECEIVER_GONE
+        self.record(data, message.destination, status, -1)
+
+    def record(self, data: DataPacket, receiver: RobotId, status: DeliveryStatus, arrival: int) -> None:
+        """The verdict on a message and one receiver; arrival: -1 when it was lost [ns]."""
+        message = data.message
+        verdict = message.verdict(data, receiver, status, arrival)
+        self._verdicts.append(verdict)
+        if status is DeliveryStatus.DELIVERED:
+            reception = Reception(
+                source=message.source,
+                payload=message.payload,
+                service_start_ns=verdict.service_start_ns,
+                arrival_ns=arrival,
+                hops=len(data.path) - 1,
+                attempts=sum(data.attempts),
+                snr_db=message.sinr_db,
+                bit_error_rate=message.bit_error_rate,
+                msdu_bytes=message.msdu_bytes,
+            )
+            self._receptions.append((arrival, message.source, message.number, receiver, reception))

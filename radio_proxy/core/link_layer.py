@@ -1,0 +1,164 @@
+"""Between routing and DCF: packets of robots become frames of stations, and what becomes of a frame is
+reported to the routing protocols of both ends.
+
+What routing costs is counted as by J. Broch et al., "A performance comparison of multi-hop wireless ad
+hoc network routing protocols", MobiCom 1998, 5.2 and 5.3: every hop of a routing packet once, IP header
+included, and apart from them ("source_route") the bytes that a source route adds to each hop of a data
+message. Repetitions, RTS, CTS and ACK are the link's own and not in it.
+"""
+
+from onehop.contracts.messages import DeliveryStatus
+from onehop.contracts.radio_section import RadioSection
+from radio_proxy.core.addresses import BROADCAST, EVERYONE, RobotId, StationIndex
+from radio_proxy.core.airtime import dsss
+from radio_proxy.core.contention import Frame
+from radio_proxy.core.data_message import DataPacket
+from radio_proxy.core.dcf import Dcf
+from radio_proxy.core.deliveries import Deliveries
+from radio_proxy.core.draws import Draws
+from radio_proxy.core.error_rates import bit_error_rate
+from radio_proxy.core.medium import Emission, Medium
+from radio_proxy.core.propagation import OWN_DB, Propagation
+from radio_proxy.core.routing.interface import Router
+
+
+class LinkLayer:
+    """The links of a mission. robots: sorted ids, in the order of their stations.
+
+    force_backoff: frames that are sent now draw a backoff even if the medium is idle. control_bytes:
+    what routing has cost so far, by kind [B]. events: of the DCF, for the timers of routing too.
+    """
+
+    def __init__(
+        self,
+        robots: tuple[RobotId, ...],
+        section: RadioSection,
+        propagation: Propagation,
+        draws: Draws,
+        deliveries: Deliveries,
+    ) -> None:
+        self.force_backoff = False
+        self.control_bytes: dict[str, int] = {}
+        self._robots = robots
+        self._index = {robot: StationIndex(i) for i, robot in enumerate(robots)}
+        self._routers: dict[RobotId, Router] = {}
+        self._propagation = propagation
+        self._deliveries = deliveries
+        self._timing = dsss(section)
+        self._medium = Medium(propagation, draws)
+        self._dcf = Dcf(
+            len(robots),
+            self._timing,
+            self._medium,
+            draws,
+            self,
+            retry_limit=section.retry_limit,
+            queue_frames=section.queue_frames,
+            rts_threshold_bytes=section.rts_threshold_bytes,
+            fade_per_exchange=section.fading == "exchange",
+        )
+        self.events = self._dcf.events
+
+    def attach(self, robot: RobotId, router: Router) -> None:
+        """A robot's NIC comes up, with this routing protocol."""
+        self._routers = dict(sorted([*self._routers.items(), (robot, router)]))
+
+    def detach(self, robot: RobotId) -> list[DataPacket]:
+        """A robot's NIC goes down: the data that it still had to send."""
+        del self._routers[robot]
+        frames = self._dcf.remove(self._index[robot])
+        return [
+            frame.packet.tried(frame.attempts)
+            for frame in frames
+            if isinstance(frame.packet, DataPacket)
+        ]
+
+    def send(
+        self, robot: RobotId, packet: object, next_hop: RobotId, size_bytes: int, kind: str, now: int
+    ) -> bool:
+        """Queue a packet for one hop; what routing adds counts when it is queued."""
+        receiver = EVERYONE if next_hop == BROADCAST else self._index[next_hop]
+        frame = Frame(receiver, size_bytes, packet, urgent=kind != "")
+        if not self._dcf.enqueue(self._index[robot], frame, now, self.force_backoff):
+            return False
+        if isinstance(packet, DataPacket):
+            kind, size_bytes = "source_route", size_bytes - packet.message.msdu_bytes
+        if size_bytes:
+            self.control_bytes[kind] = self.control_bytes.get(kind, 0) + size_bytes
+        return True
+
+    # What the DCF reports.
+
+    def on_service(self, sender: StationIndex, frame: Frame, now: int) -> None:  # noqa: ARG002
+        packet = frame.packet
+        if isinstance(packet, DataPacket) and packet.message.first_service < 0:
+            packet.message.begin_service(now)
+
+    def on_received(self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int) -> None:
+        packet = frame.packet
+        holder = self._robots[receiver]
+        if isinstance(packet, DataPacket):
+            packet.message.copies += 1
+            self._note_link(packet, frame)
+            packet = packet.moved(holder, frame.attempts)
+        else:
+            self._overhear(packet, sender, holder, now)
+        self._routers[holder].on_packet(packet, self._robots[sender], now)
+
+    def _overhear(self, packet: object, sender: StationIndex, holder: RobotId, now: int) -> None:
+        """Control packets are overheard by everyone whose mean SNR allows it."""
+        row, source = self._propagation.mean_snr_row(sender), self._robots[sender]
+        threshold_db = self._propagation.budget.receive_threshold_db
+        for robot, router in self._routers.items():
+            if robot != holder and threshold_db <= row[self._index[robot]] < OWN_DB:
+                router.on_overheard(packet, source, now)
+
+    def on_acknowledged(self, sender: StationIndex, frame: Frame, now: int) -> None:
+        if isinstance(frame.packet, DataPacket):
+            self._deliveries.release_copy(frame.packet.message)
+        router = self._routers[self._robots[sender]]
+        router.on_acknowledged(frame.packet, self._robots[frame.receiver], now)
+
+    def on_undeliverable(self, sender: StationIndex, frame: Frame, now: int) -> None:
+        packet = frame.packet
+        next_hop = self._robots[frame.receiver]
+        cause = self._cause(frame, next_hop)
+        if isinstance(packet, DataPacket):
+            self._note_link(packet, frame)
+            packet = packet.tried(frame.attempts)
+        self._routers[self._robots[sender]].on_undeliverable(packet, next_hop, cause, now)
+
+    def _cause(self, frame: Frame, next_hop: RobotId) -> DeliveryStatus:
+        """Why a hop failed: what its last attempt met, unless the next hop has left."""
+        assert frame.cause is not None, "every attempt that failed has a cause"
+        if frame.cause is not DeliveryStatus.RECEIVER_GONE and next_hop in self._routers:
+            return frame.cause
+        packet = frame.packet
+        to_relay = isinstance(packet, DataPacket) and next_hop != packet.message.destination
+        return DeliveryStatus.RELAY_GONE if to_relay else DeliveryStatus.RECEIVER_GONE
+
+    def on_broadcast_done(
+        self, sender: StationIndex, frame: Frame, emission: Emission, now: int
+    ) -> None:
+        packet = frame.packet
+        bits = 8 * (self._timing.mac_header_bytes + frame.msdu_bytes)
+        rate_mbps = self._timing.basic_rate_mbps
+        source = self._robots[sender]
+        if not isinstance(packet, DataPacket):
+            self._routers[source].on_broadcast_sent(packet, now)
+        for robot, router in self._routers.items():
+            if robot == source:
+                continue
+            cause, sinr_db = self._medium.receive(emission, self._index[robot], rate_mbps, bits)
+            if isinstance(packet, DataPacket):
+                packet.message.sinr_db = sinr_db
+                packet.message.bit_error_rate = bit_error_rate(rate_mbps, sinr_db)
+                copy = packet.tried(1) if cause else packet.moved(robot, 1)
+                status = cause or DeliveryStatus.DELIVERED
+                self._deliveries.record(copy, robot, status, -1 if cause else now)
+            elif cause is None:
+                router.on_packet(packet, source, now)
+
+    def _note_link(self, data: DataPacket, frame: Frame) -> None:
+        data.message.sinr_db = frame.sinr_db
+        data.message.bit_error_rate = bit_error_rate(self._timing.rate_mbps, frame.sinr_db)
