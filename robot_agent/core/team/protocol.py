@@ -17,7 +17,7 @@ from onehop.contracts.briefings import Briefing
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import BROADCAST, Reception
-from onehop.contracts.team import Mode
+from onehop.contracts.team import LossReason, Mode
 from robot_agent.core.team.follower_ledger import FollowerLedger
 from robot_agent.core.team.modes import ModeEvent
 from robot_agent.core.team.roster import Roster
@@ -274,12 +274,18 @@ class TeamProtocol(Standing):
     def _lead_period(self, now_ns: int, pose: Pose, trail: Sequence[tuple[float, float]]) -> None:
         leadership = self.leadership
         assert leadership is not None
-        lost = leadership.close_period(self.team.lost_after)
-        if self.mode is Mode.SETUP:
-            lost = self._end_setup(now_ns, leadership, lost)
+        unanswered = leadership.close_period(self.team.lost_after)
+        missing = self._end_setup(now_ns, leadership) if self.mode is Mode.SETUP else ()
+        absent = tuple(i for i in missing if i not in unanswered)
+        for robots, reason in (
+            (unanswered, LossReason.UNANSWERED),
+            (absent, LossReason.NOT_IN_POSITION),
+        ):
+            if robots:
+                self.note("lost_follower", robots=robots, reason=reason.value)
+        lost = tuple(sorted(unanswered + absent))
         if lost:
             self._acquaintances.give_up(lost)
-            self.note("lost_follower", robots=lost)
             self._change_roster(now_ns, leadership.roster.without(lost), lost)
         if self.leadership is None:
             return
@@ -302,10 +308,10 @@ class TeamProtocol(Standing):
             assert self.roster is not None
             self.send(BROADCAST, Beacon(self.roster, self.phase, self.narrow, pose), BEACON_MSDU_BYTES)
 
-    def _end_setup(
-        self, now_ns: int, leadership: FollowerLedger, lost: tuple[int, ...]
-    ) -> tuple[int, ...]:
+    def _end_setup(self, now_ns: int, leadership: FollowerLedger) -> tuple[int, ...]:
         """Drive off when everyone is in position; after the setup timeout those who are not are lost.
+
+        Returns those who are lost for not being in position.
 
         Differs: in profile `team` only the silent are lost, because one that answers and is still on its
         way can be led; the thesis loses it.
@@ -313,14 +319,12 @@ class TeamProtocol(Standing):
         missing = leadership.not_in_position()
         late = now_ns - leadership.since_ns >= round(self.team.setup_timeout * NANOSECONDS)
         if missing and not late:
-            return lost
+            return ()
         self.phase = MissionPhase.DRIVING
         self.fire(ModeEvent.FORMED)
         if not leadership.followers:
             self.fire(ModeEvent.LEFT_ALONE)
-        if self.open:
-            return lost
-        return tuple(sorted({*lost, *missing}))
+        return () if self.open else missing
 
     def _command(
         self,
