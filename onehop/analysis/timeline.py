@@ -4,7 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from onehop.analysis.tables import Column, Table
+from onehop.analysis.columns import Column
+from onehop.analysis.tables import Table
 from onehop.contracts.messages import LeadershipTerm
 from onehop.contracts.sections import FaultSection
 
