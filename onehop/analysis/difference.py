@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from onehop.analysis.log import Log
-from onehop.analysis.readable import fields
+from onehop.analysis.payloads import decoded_fields
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
 from onehop.wire.codec import as_map
@@ -99,7 +99,7 @@ def _presence(data: bytes | None) -> str | None:
 
 def _field(a: bytes, b: bytes) -> tuple[str, Any, Any]:
     try:
-        different = first_difference(fields(a), fields(b))
+        different = first_difference(decoded_fields(a), decoded_fields(b))
     except DecodeError:
         different = None
     return different or ("bytes", a.hex(), b.hex())

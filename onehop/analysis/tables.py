@@ -5,7 +5,7 @@ quantities float64 in SI units or with the unit in the name, words are text, and
 (members, path, payload, data) is an object column of tuples, bytes or maps.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from itertools import repeat
 from typing import Any
 
@@ -32,6 +32,10 @@ class Table(dict[str, Column]):
     def of(self, robot: int) -> "Table":
         """The rows of one robot."""
         return self.where(self["robot"] == robot)
+
+    def rows(self, *names: str) -> Iterator[tuple[Any, ...]]:
+        """These columns row by row, as plain Python values."""
+        return zip(*(self[name].tolist() for name in names), strict=True)
 
     def to_polars(self) -> Any:
         """The same as a polars.DataFrame; needs the extra `tables`."""

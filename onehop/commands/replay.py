@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from onehop.commands.opening import open_with_warning
+from onehop.commands.logs import open_with_warning
 from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
 from onehop.drivers.replay import Divergence, Report

@@ -33,10 +33,3 @@ class LeadershipHistory:
     def on_departure(self, robot: int) -> None:
         """A robot has left the mission; should it return, its next term is a new one."""
         self.acting.pop(robot, None)
-
-    @property
-    def main(self) -> LeadershipTerm | None:
-        """The term of the leader of most robots; of equal ones that of the lowest id. None: nobody leads."""
-        return min(
-            self.acting.values(), key=lambda term: (-len(term.members), term.leader), default=None
-        )

@@ -136,6 +136,53 @@ def test_a_robot_dropped_from_the_roster_is_lost_since_then() -> None:
     assert outcome.lost == (Lost(1, 0.5, "dropped from the roster of robot 2"),)
 
 
+REASONS = {
+    "unanswered": "given up by robot 2: its commands stayed unanswered",
+    "not in position at setup": "given up by robot 2: not in its slot when setup ended",
+    None: "given up by robot 2",
+}
+
+
+def given_up(robot: int, reason: str | None) -> tuple[Note, ...]:
+    return (Note("lost_follower", {"robots": (robot,)} | ({"reason": reason} if reason else {})),)
+
+
+@pytest.mark.parametrize(("reason", "why"), REASONS.items())
+def test_a_robot_that_its_leader_gave_up_is_lost_for_the_reason_in_the_note(
+    reason: str | None, why: str
+) -> None:
+    referee = Referee(PLAN)
+    referee.judge(scene(0, AT_GOAL, all_stopped(), 1.0), False)
+    referee.on_notes(2, given_up(1, reason))
+    pair = all_stopped(members=(2, 3), epoch=2)
+    outcome = judge(referee, scene(10, AT_GOAL, pair, 1.0), scene(20, AT_GOAL, pair))
+    assert outcome is not None
+    assert outcome.lost == (Lost(1, 0.5, why),)
+
+
+def test_the_reason_is_kept_when_the_leader_that_gave_up_hands_over() -> None:
+    referee = Referee(PLAN)
+    referee.judge(scene(0, AT_GOAL, all_stopped(), 1.0), False)
+    referee.on_notes(2, given_up(1, "unanswered"))
+    referee.judge(scene(1, AT_GOAL, all_stopped(leader=3, members=(2, 3), epoch=2), 1.0), False)
+    outcome = judge(referee, scene(20, AT_GOAL, all_stopped(leader=3, members=(2, 3), epoch=2)))
+    assert outcome is not None
+    assert outcome.lost == (Lost(1, 0.05, "given up by robot 2: its commands stayed unanswered"),)
+
+
+def test_an_old_reason_is_not_that_of_a_later_loss() -> None:
+    """Robot 1 is given up, comes back, and is then on no roster any more because another one elects."""
+    referee = Referee(PLAN)
+    referee.judge(scene(0, AT_GOAL, all_stopped(), 1.0), False)
+    referee.on_notes(2, given_up(1, "unanswered"))
+    for tick, members in enumerate([(2, 3), TEAM, (2, 3)], start=1):
+        words = all_stopped(members=members, epoch=tick + 1)
+        referee.judge(scene(tick, AT_GOAL, words, 1.0), False)
+    outcome = judge(referee, scene(9, AT_GOAL, all_stopped(members=(2, 3), epoch=4)))
+    assert outcome is not None
+    assert outcome.lost == (Lost(1, 0.15, "dropped from the roster of robot 2"),)
+
+
 def test_a_robot_that_was_taken_back_is_not_lost() -> None:
     referee = Referee(PLAN)
     for tick, members in enumerate([TEAM, (2, 3), TEAM]):

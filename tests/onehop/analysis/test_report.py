@@ -8,10 +8,10 @@ import pytest
 from PIL import Image
 
 from onehop.analysis import Log, open_log
+from onehop.analysis.report.election_rows import elections
 from onehop.analysis.report.narrative import narrative, summary_sentence
 from onehop.analysis.report.page import write_report
 from onehop.analysis.report.report_data import gather
-from onehop.analysis.report.sequence_chart import elections
 
 from .conftest import HELD, KILLED_S, LEADER, SUCCESSOR
 
@@ -75,7 +75,7 @@ def test_every_figure_is_there_as_png_and_svg(folder: Path, stem: str) -> None:
     assert "<svg" in (folder / f"{stem}.svg").read_text()[:1000]
 
 
-def test_the_story_tells_death_election_and_fault_in_order(log: Log) -> None:
+def test_the_narrative_has_death_election_and_fault_in_order(log: Log) -> None:
     events = narrative(gather(log))
     texts = [event.text for event in events]
     assert [event.at_s for event in events] == sorted(event.at_s for event in events)

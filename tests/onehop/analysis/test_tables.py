@@ -29,7 +29,10 @@ def verdict(message: int, status: DeliveryStatus, arrival_ns: int) -> Verdict:
 def test_verdicts_have_times_in_seconds_and_no_arrival_when_lost() -> None:
     record = RadioRecord(
         2, 2 * PERIOD_NS,
-        (verdict(1, DeliveryStatus.DELIVERED, 75_000_000), verdict(2, DeliveryStatus.BELOW_THRESHOLD, -1)),
+        (
+            verdict(1, DeliveryStatus.DELIVERED, 75_000_000),
+            verdict(2, DeliveryStatus.BELOW_THRESHOLD, -1),
+        ),
         {"rreq": 40, "rerr": 20},
     )  # fmt: skip
     message = Selected(2, "radio", encode(record))
