@@ -39,7 +39,7 @@ class LossReason(StrEnum):
 
 _LOSS_IN_WORDS: dict[str, str] = {
     LossReason.UNANSWERED: ": its commands stayed unanswered",
-    LossReason.NOT_IN_POSITION: ": not in its slot when setup ended",
+    LossReason.NOT_IN_POSITION: ": not in position when setup ended",
 }
 
 

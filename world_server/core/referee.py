@@ -90,65 +90,65 @@ class Referee:
         for robot in lost if isinstance(lost, tuple) else ():
             self._given_up.setdefault(robot, []).append(record)
 
-    def judge(self, scene: TickSummary, hope: bool) -> Outcome | None:
+    def judge(self, now: TickSummary, hope: bool) -> Outcome | None:
         """The outcome, if the mission has one by now. hope: somebody will yet be restarted."""
-        self._watch(scene)
-        verdict = self._verdict(scene, hope)
-        return None if verdict is None else self.close(*verdict, scene)
+        self._watch(now)
+        verdict = self._verdict(now, hope)
+        return None if verdict is None else self.close(*verdict, now)
 
-    def close(self, outcome: str, reason: str, scene: TickSummary) -> Outcome:
+    def close(self, outcome: str, reason: str, now: TickSummary) -> Outcome:
         """The final account, whatever ended the mission."""
-        arrived = self._arrived(scene) if outcome == "arrived" else ()
+        arrived = self._arrived(now) if outcome == "arrived" else ()
         return Outcome(
             outcome=outcome,
             reason=reason,
             arrived=arrived,
-            lost=tuple(self._loss(robot, scene) for robot in self._robots if robot not in arrived),
+            lost=tuple(self._loss(robot, now) for robot in self._robots if robot not in arrived),
             leaders=tuple(self._leadership.terms),
-            ticks=scene.ticks,
-            sim_s=scene.time_ns / 1e9,
-            collisions=scene.collisions,
+            ticks=now.ticks,
+            sim_s=now.time_ns / 1e9,
+            collisions=now.collisions,
         )
 
-    def _watch(self, scene: TickSummary) -> None:
+    def _watch(self, now: TickSummary) -> None:
         """Note who moves, and who acts as leader on which roster."""
-        for one in scene.present:
+        for one in now.present:
             robot = one.robot
-            if not -STILL < one.twist.v < STILL or robot in scene.waiting:
-                self._moved_ns = scene.time_ns
-            status = scene.statuses.get(robot)
+            if not -STILL < one.twist.v < STILL or robot in now.waiting:
+                self._moved_ns = now.time_ns
+            status = now.statuses.get(robot)
             if status is not None:
                 self._leadership.on_status(
-                    scene.time_ns / 1e9, robot, status.leader, status.epoch, status.members,
+                    now.time_ns / 1e9, robot, status.leader, status.epoch, status.members,
                     status.shape.value,
                 )  # fmt: skip
 
-    def _verdict(self, scene: TickSummary, hope: bool) -> tuple[str, str] | None:
-        if not scene.present:
+    def _verdict(self, now: TickSummary, hope: bool) -> tuple[str, str] | None:
+        if not now.present:
             return None if hope else ("failed", "no robot is left")
-        if scene.time_ns >= self._limit_ns:
-            if self._arrived(scene):
-                return "arrived", self._arrival(scene) + " when the time was up"
+        if now.time_ns >= self._limit_ns:
+            if self._arrived(now):
+                return "arrived", self._arrival(now) + " when the time was up"
             return "failed", f"time limit of {self._limit_ns / 1e9:g} s"
-        if self._moved_ns == scene.time_ns:
+        if self._moved_ns == now.time_ns:
             return None
-        stopped = all(scene.mode(one.robot) is Mode.STOPPED for one in scene.present)
-        rested = scene.time_ns - self._moved_ns >= _REST_S * 1e9
-        if (stopped or rested) and self._arrived(scene):
-            return "arrived", self._arrival(scene)
+        stopped = all(now.mode(one.robot) is Mode.STOPPED for one in now.present)
+        rested = now.time_ns - self._moved_ns >= _REST_S * 1e9
+        if (stopped or rested) and self._arrived(now):
+            return "arrived", self._arrival(now)
         if stopped and rested:
-            return "failed", self._stop_reason(scene)
+            return "failed", self._stop_reason(now)
         return None
 
-    def _arrival(self, scene: TickSummary) -> str:
-        leaders = ", ".join(str(robot) for robot in self._leaders_at_goal(scene))
-        return f"robot {leaders} at the goal with {len(self._arrived(scene))} of {len(self._robots)}"
+    def _arrival(self, now: TickSummary) -> str:
+        leaders = ", ".join(str(robot) for robot in self._leaders_at_goal(now))
+        return f"robot {leaders} at the goal with {len(self._arrived(now))} of {len(self._robots)}"
 
-    def _stop_reason(self, scene: TickSummary) -> str:
+    def _stop_reason(self, now: TickSummary) -> str:
         """Why nobody drives any more, by the last notes of those who lead."""
         notes = [
             f"robot {one.robot}: {self._last_notes[one.robot]}"
-            for one in scene.present
+            for one in now.present
             if one.robot in self._last_notes and one.robot in self._leadership.acting
         ]
         return "everyone stopped before the goal" + (f" ({'; '.join(notes)})" if notes else "")
@@ -156,35 +156,33 @@ class Referee:
     def _from_goal(self, pose: Pose) -> float:
         return math.hypot(pose.x - self._goal.x, pose.y - self._goal.y)
 
-    def _leaders_at_goal(self, scene: TickSummary) -> list[int]:
+    def _leaders_at_goal(self, now: TickSummary) -> list[int]:
         reach = self._goal.tolerance + _MARGIN
         return [
             one.robot
-            for one in scene.present
+            for one in now.present
             if one.robot in self._leadership.acting and self._from_goal(one.pose) <= reach
         ]
 
-    def _arrived(self, scene: TickSummary) -> tuple[int, ...]:
+    def _arrived(self, now: TickSummary) -> tuple[int, ...]:
         """Ids of those who obey a leader at the goal, are on its roster and within its formation."""
         arrived: list[int] = []
-        for leader in self._leaders_at_goal(scene):
+        for leader in self._leaders_at_goal(now):
             term = self._leadership.acting[leader]
             reach = _extent(term, self._spacing) + self._goal.tolerance + _MARGIN
-            for one in scene.present:
-                status = scene.statuses.get(one.robot)
+            for one in now.present:
+                status = now.statuses.get(one.robot)
                 obeys = status is not None and status.leader == leader
                 if obeys and one.robot in term.members and self._from_goal(one.pose) <= reach:
                     arrived.append(one.robot)
         return tuple(sorted(arrived))
 
-    def _loss(self, robot: int, scene: TickSummary) -> Lost:
+    def _loss(self, robot: int, now: TickSummary) -> Lost:
         if robot in self._departed:
             return self._departed[robot]
-        leaders = self._leaders_at_goal(scene) or [
-            term.leader for term in self._leadership.terms[-1:]
-        ]
+        leaders = self._leaders_at_goal(now) or [term.leader for term in self._leadership.terms[-1:]]
         dropped = self._dropped(robot, leaders[0]) if leaders else None
-        return dropped or Lost(robot=robot, at_s=scene.time_ns / 1e9, why="did not arrive")
+        return dropped or Lost(robot=robot, at_s=now.time_ns / 1e9, why="did not arrive")
 
     def _dropped(self, robot: int, leader: int) -> Lost | None:
         """When the rosters that led to `leader` lost a robot for good, and why."""
