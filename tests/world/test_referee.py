@@ -25,7 +25,7 @@ def status(
     return Status(mode, epoch, leader, members, shape, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
 
 
-def tick_summary(
+def at(
     tick: int, places: dict[int, tuple[float, float]], statuses: dict[int, Status], v: float = 0.0,
     waiting: frozenset[int] = frozenset(), collisions: int = 0,
 ) -> TickSummary:  # fmt: skip
@@ -50,8 +50,8 @@ def judge(referee: Referee, *summaries: TickSummary, hope: bool = False) -> Outc
 def test_a_stopped_team_at_the_goal_has_arrived() -> None:
     outcome = judge(
         Referee(PLAN),
-        tick_summary(1, AT_GOAL, all_stopped(), 1.0),
-        tick_summary(2, AT_GOAL, all_stopped()),
+        at(1, AT_GOAL, all_stopped(), 1.0),
+        at(2, AT_GOAL, all_stopped()),
     )
     assert outcome is not None
     assert outcome.outcome == "arrived"
@@ -62,31 +62,26 @@ def test_a_stopped_team_at_the_goal_has_arrived() -> None:
 
 
 def test_who_still_drives_keeps_the_mission_going() -> None:
-    assert (
-        judge(Referee(PLAN), *(tick_summary(tick, AT_GOAL, all_stopped(), 0.5) for tick in range(200)))
-        is None
-    )
+    assert judge(Referee(PLAN), *(at(tick, AT_GOAL, all_stopped(), 0.5) for tick in range(200))) is None
 
 
 def test_two_seconds_of_rest_are_enough_without_a_word_of_stopping() -> None:
     following = all_stopped(mode=Mode.FOLLOWING)
     referee = Referee(PLAN)
-    referee.judge(tick_summary(0, AT_GOAL, following, 1.0), False)
-    assert judge(referee, *(tick_summary(tick, AT_GOAL, following) for tick in range(1, 40))) is None
-    assert judge(referee, tick_summary(40, AT_GOAL, following)) is not None
+    referee.judge(at(0, AT_GOAL, following, 1.0), False)
+    assert judge(referee, *(at(tick, AT_GOAL, following) for tick in range(1, 40))) is None
+    assert judge(referee, at(40, AT_GOAL, following)) is not None
 
 
 def test_a_held_robot_that_will_be_released_is_waited_for() -> None:
     held = frozenset({3})
-    summaries = (tick_summary(tick, AT_GOAL, all_stopped(), waiting=held) for tick in range(200))
+    summaries = (at(tick, AT_GOAL, all_stopped(), waiting=held) for tick in range(200))
     assert judge(Referee(PLAN), *summaries) is None
 
 
 def test_the_goal_is_reached_by_its_leader_only() -> None:
     places = {1: (50.0, 50.0), 2: (47.0, 47.0), 3: (47.0, 53.0)}
-    assert (
-        judge(Referee(PLAN), *(tick_summary(tick, places, all_stopped()) for tick in range(39))) is None
-    )
+    assert judge(Referee(PLAN), *(at(tick, places, all_stopped()) for tick in range(39))) is None
 
 
 def test_a_team_that_stopped_elsewhere_has_failed_for_the_reason_it_gives() -> None:
@@ -95,7 +90,7 @@ def test_a_team_that_stopped_elsewhere_has_failed_for_the_reason_it_gives() -> N
     referee.on_notes(2, (Note("mode", {"to": "stopped"}),))
     referee.on_notes(3, (Note("set_up", {}),))
     far = {robot: (10.0 + robot, 10.0) for robot in TEAM}
-    outcome = judge(referee, *(tick_summary(tick, far, all_stopped()) for tick in range(41)))
+    outcome = judge(referee, *(at(tick, far, all_stopped()) for tick in range(41)))
     assert outcome is not None
     assert outcome.outcome == "failed"
     assert outcome.reason == "everyone stopped before the goal (robot 2: no way to the goal)"
@@ -106,15 +101,15 @@ def test_a_team_that_stopped_elsewhere_has_failed_for_the_reason_it_gives() -> N
 def test_a_team_in_setup_is_not_a_team_that_stopped() -> None:
     far = {robot: (10.0 + robot, 10.0) for robot in TEAM}
     setup = all_stopped(mode=Mode.SETUP)
-    assert judge(Referee(PLAN), *(tick_summary(tick, far, setup) for tick in range(400))) is None
+    assert judge(Referee(PLAN), *(at(tick, far, setup) for tick in range(400))) is None
 
 
 def test_nobody_left_is_a_failure_unless_somebody_returns() -> None:
     referee = Referee(PLAN)
     for robot in TEAM:
         referee.on_departure(robot, "its process died", robot * 1_000_000_000)
-    assert judge(referee, tick_summary(100, {}, {}), hope=True) is None
-    outcome = judge(referee, tick_summary(101, {}, {}))
+    assert judge(referee, at(100, {}, {}), hope=True) is None
+    outcome = judge(referee, at(101, {}, {}))
     assert outcome is not None
     assert (outcome.outcome, outcome.reason) == ("failed", "no robot is left")
     assert outcome.lost == tuple(Lost(robot, float(robot), "its process died") for robot in TEAM)
@@ -123,9 +118,7 @@ def test_nobody_left_is_a_failure_unless_somebody_returns() -> None:
 @pytest.mark.parametrize(("places", "expected"), [(AT_GOAL, "arrived"), ({1: (1.0, 1.0)}, "failed")])
 def test_the_time_limit_ends_the_mission(places: dict[int, tuple[float, float]], expected: str) -> None:
     words = all_stopped(mode=Mode.FOLLOWING)
-    outcome = judge(
-        Referee(PLAN), tick_summary(1999, places, words, 1.0), tick_summary(2000, places, words, 1.0)
-    )
+    outcome = judge(Referee(PLAN), at(1999, places, words, 1.0), at(2000, places, words, 1.0))
     assert outcome is not None
     assert outcome.outcome == expected
     assert "time" in outcome.reason
@@ -133,11 +126,11 @@ def test_the_time_limit_ends_the_mission(places: dict[int, tuple[float, float]],
 
 def test_a_robot_dropped_from_the_roster_is_lost_since_then() -> None:
     referee = Referee(PLAN)
-    referee.judge(tick_summary(0, AT_GOAL, all_stopped(), 1.0), False)
+    referee.judge(at(0, AT_GOAL, all_stopped(), 1.0), False)
     pair = {2: status(members=(2, 3), epoch=2, shape=Shape.COLUMN), 3: status(members=(2, 3), epoch=2)}
     alone = {1: status(leader=1, members=(1,), epoch=5, shape=Shape.SOLO)}
-    referee.judge(tick_summary(10, AT_GOAL, pair | alone, 1.0), False)
-    outcome = judge(referee, tick_summary(20, AT_GOAL, pair | alone))
+    referee.judge(at(10, AT_GOAL, pair | alone, 1.0), False)
+    outcome = judge(referee, at(20, AT_GOAL, pair | alone))
     assert outcome is not None
     assert outcome.arrived == (2, 3)
     assert outcome.lost == (Lost(1, 0.5, "dropped from the roster of robot 2"),)
@@ -159,10 +152,10 @@ def test_a_robot_that_its_leader_gave_up_is_lost_for_the_reason_in_the_note(
     reason: str | None, why: str
 ) -> None:
     referee = Referee(PLAN)
-    referee.judge(tick_summary(0, AT_GOAL, all_stopped(), 1.0), False)
+    referee.judge(at(0, AT_GOAL, all_stopped(), 1.0), False)
     referee.on_notes(2, given_up(1, reason))
     pair = all_stopped(members=(2, 3), epoch=2)
-    outcome = judge(referee, tick_summary(10, AT_GOAL, pair, 1.0), tick_summary(20, AT_GOAL, pair))
+    outcome = judge(referee, at(10, AT_GOAL, pair, 1.0), at(20, AT_GOAL, pair))
     assert outcome is not None
     assert outcome.lost == (Lost(1, 0.5, why),)
 
@@ -170,11 +163,11 @@ def test_a_robot_that_its_leader_gave_up_is_lost_for_the_reason_in_the_note(
 def test_the_reason_is_kept_when_the_leader_that_gave_up_hands_over() -> None:
     places = AT_GOAL | {2: AT_GOAL[3], 3: AT_GOAL[2]}
     referee = Referee(PLAN)
-    referee.judge(tick_summary(0, places, all_stopped(), 1.0), False)
+    referee.judge(at(0, places, all_stopped(), 1.0), False)
     referee.on_notes(2, given_up(1, "unanswered"))
     pair = all_stopped(leader=3, members=(2, 3), epoch=2)
-    referee.judge(tick_summary(1, places, pair, 1.0), False)
-    outcome = judge(referee, tick_summary(20, places, pair))
+    referee.judge(at(1, places, pair, 1.0), False)
+    outcome = judge(referee, at(20, places, pair))
     assert outcome is not None
     assert outcome.lost == (Lost(1, 0.05, "given up by robot 2: its commands stayed unanswered"),)
 
@@ -182,12 +175,12 @@ def test_the_reason_is_kept_when_the_leader_that_gave_up_hands_over() -> None:
 def test_an_old_reason_is_not_that_of_a_later_loss() -> None:
     """Robot 1 is given up, comes back, and is then on no roster any more because another one elects."""
     referee = Referee(PLAN)
-    referee.judge(tick_summary(0, AT_GOAL, all_stopped(), 1.0), False)
+    referee.judge(at(0, AT_GOAL, all_stopped(), 1.0), False)
     referee.on_notes(2, given_up(1, "unanswered"))
     for tick, members in enumerate([(2, 3), TEAM, (2, 3)], start=1):
         words = all_stopped(members=members, epoch=tick + 1)
-        referee.judge(tick_summary(tick, AT_GOAL, words, 1.0), False)
-    outcome = judge(referee, tick_summary(9, AT_GOAL, all_stopped(members=(2, 3), epoch=4)))
+        referee.judge(at(tick, AT_GOAL, words, 1.0), False)
+    outcome = judge(referee, at(9, AT_GOAL, all_stopped(members=(2, 3), epoch=4)))
     assert outcome is not None
     assert outcome.lost == (Lost(1, 0.15, "dropped from the roster of robot 2"),)
 
@@ -196,8 +189,8 @@ def test_a_robot_that_was_taken_back_is_not_lost() -> None:
     referee = Referee(PLAN)
     for tick, members in enumerate([TEAM, (2, 3), TEAM]):
         words = {robot: status(members=members, epoch=tick + 1) for robot in TEAM}
-        referee.judge(tick_summary(tick, AT_GOAL, words, 1.0), False)
-    outcome = judge(referee, tick_summary(3, AT_GOAL, all_stopped(epoch=3)))
+        referee.judge(at(tick, AT_GOAL, words, 1.0), False)
+    outcome = judge(referee, at(3, AT_GOAL, all_stopped(epoch=3)))
     assert outcome is not None
     assert outcome.lost == ()
 
@@ -207,17 +200,17 @@ def test_a_robot_that_was_taken_back_and_then_fell_behind_was_not_dropped() -> N
     places = AT_GOAL | {1: (20.0, 20.0)}
     for tick, members in enumerate([TEAM, (2, 3), TEAM]):
         words = {robot: status(members=members, epoch=tick + 1) for robot in TEAM}
-        referee.judge(tick_summary(tick, places, words, 1.0), False)
-    outcome = judge(referee, tick_summary(3, places, all_stopped(epoch=3)))
+        referee.judge(at(tick, places, words, 1.0), False)
+    outcome = judge(referee, at(3, places, all_stopped(epoch=3)))
     assert outcome is not None
     assert outcome.lost == (Lost(1, 0.15, "did not arrive"),)
 
 
 def test_who_follows_without_being_on_the_roster_has_not_arrived() -> None:
     referee = Referee(PLAN)
-    referee.judge(tick_summary(0, AT_GOAL, all_stopped(), 1.0), False)
+    referee.judge(at(0, AT_GOAL, all_stopped(), 1.0), False)
     words = all_stopped() | {2: status(members=(2, 3), epoch=2)}
-    outcome = judge(referee, tick_summary(4, AT_GOAL, words))
+    outcome = judge(referee, at(4, AT_GOAL, words))
     assert outcome is not None
     assert outcome.arrived == (2, 3)
     assert outcome.lost == (Lost(1, 0.2, "dropped from the roster of robot 2"),)
@@ -227,8 +220,8 @@ def test_a_straggler_of_the_roster_did_not_arrive() -> None:
     places = AT_GOAL | {3: (20.0, 20.0)}
     outcome = judge(
         Referee(PLAN),
-        tick_summary(0, places, all_stopped(), 1.0),
-        tick_summary(4, places, all_stopped()),
+        at(0, places, all_stopped(), 1.0),
+        at(4, places, all_stopped()),
     )
     assert outcome is not None
     assert outcome.arrived == (1, 2)
@@ -239,8 +232,8 @@ def test_a_returned_robot_can_arrive() -> None:
     referee = Referee(PLAN)
     referee.on_departure(1, "died", 0)
     referee.on_return(1)
-    referee.judge(tick_summary(0, AT_GOAL, all_stopped(), 1.0), False)
-    outcome = judge(referee, tick_summary(1, AT_GOAL, all_stopped()))
+    referee.judge(at(0, AT_GOAL, all_stopped(), 1.0), False)
+    outcome = judge(referee, at(1, AT_GOAL, all_stopped()))
     assert outcome is not None
     assert outcome.arrived == TEAM
 
@@ -249,7 +242,7 @@ def test_the_end_of_a_column_has_arrived_too() -> None:
     """Slots of a column lie j * spacing behind (thesis 3.3.1): 4 and 8 m."""
     places = {2: (50.0, 50.0), 3: (46.0, 50.0), 1: (42.0, 50.0)}
     words = all_stopped(shape=Shape.COLUMN)
-    outcome = judge(Referee(PLAN), tick_summary(0, places, words, 1.0), tick_summary(1, places, words))
+    outcome = judge(Referee(PLAN), at(0, places, words, 1.0), at(1, places, words))
     assert outcome is not None
     assert outcome.arrived == TEAM
 
@@ -264,8 +257,8 @@ def test_leaders_are_listed_from_the_moment_they_act_as_such() -> None:
         {2: status(epoch=2, members=(2, 3), shape=Shape.COLUMN), 3: status(leader=3, epoch=3)},
     ]
     for tick, words in enumerate(steps):
-        referee.judge(tick_summary(tick, AT_GOAL, words, 1.0), False)
-    leaders = referee.close("aborted", "", tick_summary(9, {}, {})).leaders
+        referee.judge(at(tick, AT_GOAL, words, 1.0), False)
+    leaders = referee.close("aborted", "", at(9, {}, {})).leaders
     assert leaders == (
         LeadershipTerm(0.0, 2, 1, TEAM, "wedge"),
         LeadershipTerm(0.1, 2, 2, (2, 3), "column"),
@@ -275,6 +268,6 @@ def test_leaders_are_listed_from_the_moment_they_act_as_such() -> None:
 
 
 def test_an_aborted_mission_counts_its_collisions() -> None:
-    outcome = Referee(PLAN).close("aborted", "interrupted", tick_summary(7, AT_GOAL, {}, collisions=3))
+    outcome = Referee(PLAN).close("aborted", "interrupted", at(7, AT_GOAL, {}, collisions=3))
     assert (outcome.outcome, outcome.reason, outcome.collisions) == ("aborted", "interrupted", 3)
     assert outcome.arrived == ()

@@ -1,6 +1,6 @@
 """A mission told in sentences: what happened, when, and why, for somebody who was not there."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any, NamedTuple
 
@@ -65,8 +65,12 @@ def summary_sentence(report: ReportData) -> str:
     return f"{sentence}{counted}{': ' + lost if lost else ''}.{led}{reason}"
 
 
-def _ids(robots: Any) -> str:
+def _ids(robots: Sequence[int]) -> str:
     return ", ".join(map(str, robots))
+
+
+def _robots(robots: Sequence[int]) -> str:
+    return f"robot{'s' if len(robots) > 1 else ''} {_ids(robots)}"
 
 
 def _beginning(report: ReportData) -> Iterator[NarrativeEvent]:
@@ -91,13 +95,14 @@ def _notes(report: ReportData) -> Iterator[NarrativeEvent]:
         elif kind in _SENTENCES:
             weight, sentence = _SENTENCES[kind]
             why = loss_in_words(data.get("reason", ""))
-            blanks = {**_plain(data), "robot": robot, "why": why}
+            robots = _robots(data.get("robots", ()))
+            blanks = {**_plain(data), "robot": robot, "robots": robots, "why": why}
             yield NarrativeEvent(at_s, weight, sentence.format_map(blanks))
 
 
 _SENTENCES = {
-    "lost_follower": (2, "Leader {robot} gives up robot {robots}{why}."),
-    "joined": (2, "Leader {robot} takes in robot {robots}."),
+    "lost_follower": (2, "Leader {robot} gives up {robots}{why}."),
+    "joined": (2, "Leader {robot} takes in {robots}."),
     "yielded": (2, "Robot {robot} obeys robot {leader} from now on (epoch {epoch} beats its own)."),
     "roster": (1, "Robot {robot} announces a new roster: {members} (epoch {epoch})."),
     "arrived": (2, "Robot {robot} reaches the goal."),

@@ -19,6 +19,7 @@ from onehop.analysis.report.follower_chart import (
 from onehop.analysis.report.narrative import narrative, summary_sentence
 from onehop.analysis.report.page import write_report
 from onehop.analysis.report.report_data import gather
+from robot_agent.core.team.team_messages import Command
 
 from .conftest import HELD, KILLED_S, LEADER, SUCCESSOR
 from .test_difference import altered, rewritten
@@ -103,7 +104,7 @@ def test_the_narrative_has_death_election_and_fault_in_order(log: Log) -> None:
         ),
         (
             {"robots": [1, 4], "reason": "not in position at setup"},
-            "Leader 3 gives up robot 1, 4: not in its slot when setup ended.",
+            "Leader 3 gives up robots 1, 4: not in position when setup ended.",
         ),
         ({"robots": [1]}, "Leader 3 gives up robot 1."),
     ],
@@ -124,11 +125,12 @@ def test_the_narrative_has_a_sentence_for_each_cause_of_a_loss(
 def test_the_bit_error_rates_of_a_next_are_the_thesiss_and_the_modulations(log: Log) -> None:
     """Eq. 3.24, 3.25 with the 6400 bits of 800 B; the modulation makes no error above 20 dB."""
     report = gather(log)
-    nexts = [
-        t for t in report.traces if t.receiver == 4 and t.kind in ("Setup", "Next", "Lost_Follower")
+    commands = [
+        (trace.arrival_s, trace.snr_db)
+        for trace in report.traces
+        if trace.receiver == 4 and isinstance(trace.message, Command)
     ]
-    assert nexts
-    snr_db = np.array([trace.snr_db for trace in sorted(nexts, key=lambda trace: trace.arrival_s)])
+    snr_db = np.array([value for _, value in sorted(commands)])
     expected = np.maximum(0.5 * np.exp(-(10.0 ** (snr_db / 10.0)) / 6400.0), BER_FLOOR)
     thesis, own = thesis_bit_errors(report, 4)[1], modulation_bit_errors(report, 4)[1]
     assert thesis[np.isfinite(thesis)] == pytest.approx(expected, rel=1e-12)

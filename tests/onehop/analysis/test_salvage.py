@@ -10,12 +10,12 @@ from mcap.opcode import Opcode
 from onehop.analysis import Log, open_log
 from onehop.analysis.salvage import salvage
 from onehop.contracts.errors import LogError
-from onehop.wire.log_reader import LogFile, Tick
+from onehop.wire.log_reader import LogFile, LoggedTick
 from onehop.wire.log_writer import LogWriter
 from onehop.wire.selection import walk
 
 
-def ticks(path: Path) -> list[Tick]:
+def ticks(path: Path) -> list[LoggedTick]:
     return list(LogFile(path).ticks())
 
 
