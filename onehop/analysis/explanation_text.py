@@ -22,7 +22,7 @@ WHY_LOST = {
 
 
 def explanation_text(one: Explanation) -> Iterator[str]:
-    """Lines of text: what the robot is doing, why, and what it heard."""
+    """Lines of text: what the robot is doing, why, and which messages it got and sent."""
     yield f"Robot {one.robot} at {one.at_s:.2f} s (tick {one.tick})"
     if one.left is not None:
         yield f"  It left at {one.left['at_s']:.2f} s: {one.left['why']}. What follows is its last tick."
@@ -48,7 +48,7 @@ def _state(one: Explanation) -> Iterator[str]:
     members = " ".join(map(str, roster["members"])) or "nobody"
     whom = "itself" if roster["leader"] == one.robot else f"robot {roster['leader']}"
     yield (
-        f"roster   obeys {whom}: epoch {roster['epoch']}, {members}, {roster['shape']}, "
+        f"roster   obeys {whom}: epoch {roster['epoch']}, members {members}, {roster['shape']}, "
         f"since {one.roster.since_s:.2f} s"
     )
     yield from _gain(one)
@@ -59,7 +59,7 @@ def _state(one: Explanation) -> Iterator[str]:
             f"error    {status['error']:.2f} m to its {aim}; {stands}, heads for "
             f"({status['target_x']:.2f}, {status['target_y']:.2f}) m"
         )
-        yield f"command  v {status['v']:.2f} m/s, w {status['w']:.2f} rad/s"
+        yield f"command  v {status['v']:z.2f} m/s, w {status['w']:z.2f} rad/s"
 
 
 def _gain(one: Explanation) -> Iterator[str]:
@@ -84,11 +84,14 @@ def _gain(one: Explanation) -> Iterator[str]:
     else:
         yield (
             f"leader   last command at {one.next_s:.3f} s, {one.at_s - one.next_s:.2f} s before; "
-            f"one is due every {one.team.next_period:g} s, patience {one.team.leader_timeout:g} s"
+            f"one is due every {one.team.next_period:g} s, and after {one.team.leader_timeout:g} s "
+            "without one it gives the leader up"
         )
 
 
 def _event(event: dict[str, Any]) -> str:
+    if event["kind"] == "mode":
+        return f"  {event['at_s']:8.2f} s  mode: {event['was']} -> {event['mode']}, on {event['on']!r}"
     details = ", ".join(
         f"{key} {' '.join(map(str, value)) if isinstance(value, list | tuple) else _short(value)}"
         for key, value in event.items()
@@ -100,7 +103,7 @@ def _event(event: dict[str, Any]) -> str:
 
 
 def _short(value: Any) -> str:
-    return f"{value:.2f}" if isinstance(value, float) else str(value)
+    return f"{value:z.2f}" if isinstance(value, float) else str(value)
 
 
 def _messages(one: Explanation) -> Iterator[str]:

@@ -167,7 +167,7 @@ def _lost_leader(report: ReportData, at_s: float, leader: int, robots: list[int]
         return NarrativeEvent(at_s, 2, f"{text}. Robot {successor.leader} goes on alone.")
     return NarrativeEvent(
         at_s, 2,
-        f"{text}. Each strikes it from the same list and comes, without a message, to the same leader, "
+        f"{text}. Each strikes it from the roster and finds, without a vote, the same leader, "
         f"robot {successor.leader}, median of {_ids(successor.members)}, and shape, {successor.shape}.",
     )  # fmt: skip
 
@@ -181,7 +181,7 @@ def _departures(report: ReportData) -> Iterator[NarrativeEvent]:
     for one in report.gone:
         leads = [term.leader for term in report.main_terms if term.at_s < one.at_s]
         part = ", the leader," if leads and leads[-1] == one.robot else ""
-        yield NarrativeEvent(one.at_s, 2, f"Robot {one.robot}{part} is gone: {one.why}.")
+        yield NarrativeEvent(one.at_s, 2, f"Robot {one.robot}{part} leaves the mission: {one.why}.")
 
 
 def _fault(what: str, lasted_s: float) -> str:
@@ -203,5 +203,5 @@ def _ending(report: ReportData) -> Iterator[NarrativeEvent]:
     summary = report.log.summary
     if summary is not None:
         yield NarrativeEvent(
-            summary["sim_s"], 2, f"The mission has {summary['outcome']}: {summary['reason']}."
+            summary["sim_s"], 2, f"The mission ends: {summary['outcome']}, {summary['reason']}."
         )

@@ -67,7 +67,7 @@ def _page(report: ReportData, pictures: list[Picture]) -> str:
 <h2>The team</h2>
 {team_table(report)}
 {sections}
-<h2>Words</h2>
+<h2>Glossary</h2>
 {_glossary()}
 <h2>The run</h2>
 {_run_table(report)}

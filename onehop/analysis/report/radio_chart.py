@@ -5,6 +5,7 @@ from collections import Counter
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from onehop.analysis.palette import FAINT, INK, OKABE_ITO
 from onehop.analysis.report.report_data import ReportData
@@ -57,6 +58,7 @@ def _draw_losses(axes: Axes, report: ReportData) -> None:
             textcoords="offset points", fontsize=8, color=INK,
         )  # fmt: skip
     axes.set_ylim(0, max(1.0, 1.18 * base.max()))
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel("receiver")
     axes.set_ylabel("messages lost")
     axes.grid(axis="x", visible=False)

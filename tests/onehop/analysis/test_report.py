@@ -88,7 +88,7 @@ def test_the_narrative_has_death_election_and_fault_in_order(log: Log) -> None:
     events = narrative(gather(log))
     texts = [event.text for event in events]
     assert [event.at_s for event in events] == sorted(event.at_s for event in events)
-    death = next(n for n, text in enumerate(texts) if f"Robot {LEADER}, the leader, is gone" in text)
+    death = next(n for n, text in enumerate(texts) if f"Robot {LEADER}, the leader, leaves" in text)
     election = next(n for n, text in enumerate(texts) if f"robot {SUCCESSOR}, median of 1, 3, 4" in text)
     fault = next(n for n, text in enumerate(texts) if f"Fault: hold {HELD}" in text)
     assert fault < death < election
