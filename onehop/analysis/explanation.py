@@ -1,7 +1,7 @@
 """Why one robot did what it did at one moment, from the log alone.
 
-Its own words (status and notes), the messages that it was sent and what became of them, and the faults
-in force around it. Nothing is simulated.
+Its status and notes, the messages to it and from it with their delivery status, and the faults in force
+around it. Nothing is simulated.
 """
 
 import math
@@ -12,7 +12,7 @@ import numpy as np
 
 from onehop.analysis.log import Log
 from onehop.analysis.message_traces import MessageTrace, join
-from onehop.analysis.readable import content_of
+from onehop.analysis.payloads import summary_of
 from onehop.analysis.tables import Table
 from onehop.analysis.timeline import departures
 from onehop.contracts.errors import InputError
@@ -21,7 +21,7 @@ from onehop.contracts.sections import GainsSection, TeamSection
 from robot_agent.core.team.team_messages import Command
 
 WINDOW_S = 6.0
-"""Messages and events of this long before the moment are told [s]: three periods of Next."""
+"""Messages and events of this long before the moment are listed [s]: three periods of Next."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +37,7 @@ class Explanation:
     """One robot at one moment. left: when and why it left, if it is not there at at_s.
 
     mode_change: the note of the last change of mode {mode, was, on}, None at the start. next_s: arrival
-    of the last command from its leader, None when there was none. heard: messages to it and from it in
+    of the last command from its leader, None when there was none. traces: messages to it and from it in
     the window, in order. status, pose: last row of the tables `status` and `poses` as plain values.
     """
 
@@ -53,7 +53,7 @@ class Explanation:
     status: dict[str, Any]
     pose: dict[str, Any]
     next_s: float | None
-    heard: tuple[MessageTrace, ...]
+    traces: tuple[MessageTrace, ...]
     events: tuple[dict[str, Any], ...]
     faults: tuple[str, ...]
     gains: GainsSection
@@ -75,7 +75,7 @@ class Explanation:
             "status": status,
             "pose": self.pose,
             "last_next_s": self.next_s,
-            "messages": [_message_json(trace) for trace in self.heard],
+            "messages": [_message_json(trace) for trace in self.traces],
             "events": list(self.events),
             "faults": list(self.faults),
         }
@@ -84,7 +84,7 @@ class Explanation:
 def _message_json(trace: MessageTrace) -> dict[str, Any]:
     plain = asdict(trace)
     del plain["message"]
-    plain["says"] = content_of(trace.message)
+    plain["says"] = summary_of(trace.message)
     plain["path"] = list(trace.path)
     plain["arrival_s"] = None if math.isnan(trace.arrival_s) else trace.arrival_s
     return plain
@@ -109,9 +109,9 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
             f"--at {at_s:g}", "the log ends before that", f"at most {status['time_s'][-1]:g} s"
         )
     own = [
-        frame
-        for frame in join(ground["verdicts"], ground["transmit_requests"])
-        if _concerns(frame, robot)
+        trace
+        for trace in join(ground["verdicts"], ground["transmit_requests"])
+        if _concerns(trace, robot)
     ]
     changes = [data for kind, data in _notes(tables["notes"]) if kind == "mode"]
     last_s = float(status["time_s"][-1])
@@ -128,7 +128,7 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         status=_row(status),
         pose=_row(here),
         next_s=_last_command(own, robot, int(status["leader"][-1])),
-        heard=tuple(frame for frame in own if frame.settled_s > last_s - window_s),
+        traces=tuple(trace for trace in own if trace.settled_s > last_s - window_s),
         events=_events(tables["notes"], last_s - window_s),
         faults=tuple(_faults(log, robot, last_s)),
         gains=log.scenario.gains,
@@ -136,8 +136,8 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
     )
 
 
-def _concerns(frame: MessageTrace, robot: int) -> bool:
-    return robot in (frame.receiver, frame.source)
+def _concerns(trace: MessageTrace, robot: int) -> bool:
+    return robot in (trace.receiver, trace.source)
 
 
 def _left(ground: dict[str, Table], robot: int, tick: int) -> dict[str, Any] | None:
@@ -182,12 +182,12 @@ def _row(table: Table) -> dict[str, Any]:
 
 def _last_command(own: list[MessageTrace], robot: int, leader: int) -> float | None:
     arrivals = [
-        frame.arrival_s
-        for frame in own
-        if frame.delivered
-        and frame.receiver == robot
-        and frame.source == leader
-        and isinstance(frame.message, Command)
+        trace.arrival_s
+        for trace in own
+        if trace.delivered
+        and trace.receiver == robot
+        and trace.source == leader
+        and isinstance(trace.message, Command)
     ]
     return max(arrivals, default=None)
 

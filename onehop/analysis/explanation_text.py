@@ -6,7 +6,7 @@ from typing import Any
 
 from onehop.analysis.explanation import Explanation
 from onehop.analysis.message_traces import MessageTrace
-from onehop.analysis.readable import content_of
+from onehop.analysis.payloads import summary_of
 from onehop.contracts.messages import DeliveryStatus
 
 WHY_LOST = {
@@ -23,8 +23,8 @@ WHY_LOST = {
 """What each delivery status of a lost message means, in plain words."""
 
 
-def tell(one: Explanation) -> Iterator[str]:
-    """Lines of text: what the robot is doing, why, and what it heard."""
+def explanation_text(one: Explanation) -> Iterator[str]:
+    """Lines of text: what the robot is doing, why, and which messages it got and sent."""
     yield f"Robot {one.robot} at {one.at_s:.2f} s (tick {one.tick})"
     if one.left is not None:
         yield f"  It left at {one.left['at_s']:.2f} s: {one.left['why']}. What follows is its last tick."
@@ -38,7 +38,7 @@ def tell(one: Explanation) -> Iterator[str]:
     yield ""
     yield "Messages to it and from it"
     yield from _messages(one)
-    if not one.heard:
+    if not one.traces:
         yield "  none"
 
 
@@ -50,7 +50,7 @@ def _state(one: Explanation) -> Iterator[str]:
     members = " ".join(map(str, roster["members"])) or "nobody"
     whom = "itself" if roster["leader"] == one.robot else f"robot {roster['leader']}"
     yield (
-        f"roster   obeys {whom}: epoch {roster['epoch']}, {members}, {roster['shape']}, "
+        f"roster   obeys {whom}: epoch {roster['epoch']}, members {members}, {roster['shape']}, "
         f"since {one.roster.since_s:.2f} s"
     )
     yield from _gain(one)
@@ -61,7 +61,7 @@ def _state(one: Explanation) -> Iterator[str]:
             f"error    {status['error']:.2f} m to its {aim}; {stands}, heads for "
             f"({status['target_x']:.2f}, {status['target_y']:.2f}) m"
         )
-        yield f"command  v {status['v']:.2f} m/s, w {status['w']:.2f} rad/s"
+        yield f"command  v {status['v']:z.2f} m/s, w {status['w']:z.2f} rad/s"
 
 
 def _gain(one: Explanation) -> Iterator[str]:
@@ -86,11 +86,14 @@ def _gain(one: Explanation) -> Iterator[str]:
     else:
         yield (
             f"leader   last command at {one.next_s:.3f} s, {one.at_s - one.next_s:.2f} s before; "
-            f"one is due every {one.team.next_period:g} s, patience {one.team.leader_timeout:g} s"
+            f"one is due every {one.team.next_period:g} s, and after {one.team.leader_timeout:g} s "
+            "without one it gives the leader up"
         )
 
 
 def _event(event: dict[str, Any]) -> str:
+    if event["kind"] == "mode":
+        return f"  {event['at_s']:8.2f} s  mode: {event['was']} -> {event['mode']}, on {event['on']!r}"
     details = ", ".join(
         f"{key} {' '.join(map(str, value)) if isinstance(value, list | tuple) else _short(value)}"
         for key, value in event.items()
@@ -102,45 +105,45 @@ def _event(event: dict[str, Any]) -> str:
 
 
 def _short(value: Any) -> str:
-    return f"{value:.2f}" if isinstance(value, float) else str(value)
+    return f"{value:z.2f}" if isinstance(value, float) else str(value)
 
 
 def _messages(one: Explanation) -> Iterator[str]:
-    """One line a message; what it said to all is one line, however many were to hear it."""
-    told: set[int] = set()
-    for frame in one.heard:
-        if frame.source != one.robot or not frame.broadcast:
-            yield _message(frame, one.robot)
-        elif frame.number not in told:
-            told.add(frame.number)
-            copies = [other for other in one.heard if _same(frame, other)]
-            yield _broadcast(frame, copies)
+    """One line a message; a broadcast of the robot is one line, however many were to receive it."""
+    listed: set[int] = set()
+    for trace in one.traces:
+        if trace.source != one.robot or not trace.broadcast:
+            yield _message(trace, one.robot)
+        elif trace.number not in listed:
+            listed.add(trace.number)
+            copies = [other for other in one.traces if _same(trace, other)]
+            yield _broadcast(trace, copies)
 
 
-def _same(frame: MessageTrace, other: MessageTrace) -> bool:
-    return (frame.source, frame.number) == (other.source, other.number)
+def _same(trace: MessageTrace, other: MessageTrace) -> bool:
+    return (trace.source, trace.number) == (other.source, other.number)
 
 
-def _broadcast(frame: MessageTrace, copies: list[MessageTrace]) -> str:
+def _broadcast(trace: MessageTrace, copies: list[MessageTrace]) -> str:
     reached = " ".join(str(copy.receiver) for copy in copies if copy.delivered) or "nobody"
     missed = ", ".join(f"{copy.receiver} {copy.status}" for copy in copies if not copy.delivered)
     lost = f", LOST: {missed}" if missed else ""
     return (
-        f"  {frame.offered_s:8.2f} s  to all  {frame.kind:<13} reached {reached}{lost}; "
-        f"{content_of(frame.message)}"
+        f"  {trace.offered_s:8.2f} s  to all  {trace.kind:<13} reached {reached}{lost}; "
+        f"{summary_of(trace.message)}"
     )
 
 
-def _message(frame: MessageTrace, robot: int) -> str:
-    to_it = frame.receiver == robot
-    direction = f"from {frame.source}" if to_it else f"to   {frame.receiver}"
-    if frame.delivered:
-        delay_ms = 1e3 * (frame.arrival_s - frame.offered_s)
-        fate = f"arrived after {delay_ms:.1f} ms, SNR {frame.snr_db:.1f} dB"
+def _message(trace: MessageTrace, robot: int) -> str:
+    to_it = trace.receiver == robot
+    direction = f"from {trace.source}" if to_it else f"to   {trace.receiver}"
+    if trace.delivered:
+        delay_ms = 1e3 * (trace.arrival_s - trace.offered_s)
+        outcome = f"arrived after {delay_ms:.1f} ms, SNR {trace.snr_db:.1f} dB"
     else:
-        snr = "" if math.isinf(frame.snr_db) else f" (SNR {frame.snr_db:.1f} dB)"
-        fate = f"LOST, {frame.status}{snr}: {WHY_LOST[DeliveryStatus(frame.status)]}"
-    tries = f", attempts {frame.attempts}" if frame.attempts > 1 else ""
-    via = f", via {' '.join(map(str, frame.path[1:-1]))}" if len(frame.path) > 2 else ""
-    says = content_of(frame.message)
-    return f"  {frame.offered_s:8.2f} s  {direction:<7} {frame.kind:<13} {fate}{tries}{via}; {says}"
+        snr = "" if math.isinf(trace.snr_db) else f" (SNR {trace.snr_db:.1f} dB)"
+        outcome = f"LOST, {trace.status}{snr}: {WHY_LOST[DeliveryStatus(trace.status)]}"
+    tries = f", attempts {trace.attempts}" if trace.attempts > 1 else ""
+    via = f", via {' '.join(map(str, trace.path[1:-1]))}" if len(trace.path) > 2 else ""
+    says = summary_of(trace.message)
+    return f"  {trace.offered_s:8.2f} s  {direction:<7} {trace.kind:<13} {outcome}{tries}{via}; {says}"

@@ -15,7 +15,8 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
-from onehop.analysis.tables import TABLES, Table, build
+from onehop.analysis.columns import TABLES
+from onehop.analysis.tables import Table, build
 from onehop.contracts import topics
 from onehop.contracts.errors import InputError
 from onehop.contracts.messages import Action, Inbox, Observation, RadioRecord, Truth
@@ -104,7 +105,7 @@ class Log:
         start_s: float = 0.0,
         end_s: float | None = None,
     ) -> Table:
-        """One table of columns; robots only where the messages are a robot's own (tables.TABLES)."""
+        """One table of columns; robots only where the messages are a robot's own (columns.TABLES)."""
         return self.tables(name, robots=robots, start_s=start_s, end_s=end_s)[name]
 
     def tables(
@@ -120,7 +121,7 @@ class Log:
                 raise InputError(
                     f"table {name}", "there is no such table", f"one of {', '.join(TABLES)}"
                 )
-        stems = sorted({TABLES[name][0] for name in names})
+        stems = sorted({TABLES[name].key for name in names})
         keys = [key for stem in stems for key in _keys(stem, robots)]
         return build(names, self.messages(*keys, start_s=start_s, end_s=end_s), self.period_ns)
 

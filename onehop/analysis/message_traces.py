@@ -1,14 +1,14 @@
-"""Every message between robots with its whole story: who said what to whom, and what became of it.
+"""The trace of every message between robots: who sent what to whom, and what became of it.
 
-The radio's verdicts know no payloads and the offers know no fate; a message's number (the how-many-th of
-its source, as radio_proxy counts) joins the two.
+The radio's verdicts hold no payloads and the transmit requests no delivery status; a message's number
+(the how-many-th of its source, as radio_proxy counts) joins the two.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from onehop.analysis.log import Log
-from onehop.analysis.readable import kind_of, opened
+from onehop.analysis.payloads import decode_payload, kind_of
 from onehop.analysis.tables import Table
 from robot_agent.core.team.team_messages import TeamMessage
 
@@ -17,8 +17,8 @@ from robot_agent.core.team.team_messages import TeamMessage
 class MessageTrace:
     """One message to one receiver. Times in s of the mission; arrival_s is nan when it was lost.
 
-    settled_s: end of the tick in which its fate was known. kind: kind_of(message). path: source to last
-    holder. attempts: over all hops.
+    settled_s: end of the tick in which its delivery status was known. kind: kind_of(message). path:
+    source to last holder. attempts: over all hops.
     """
 
     source: int
@@ -42,23 +42,22 @@ class MessageTrace:
         return self.status == "delivered"
 
 
-def frames(log: Log, start_s: float = 0.0, end_s: float | None = None) -> list[MessageTrace]:
+def traces(log: Log, start_s: float = 0.0, end_s: float | None = None) -> list[MessageTrace]:
     """Messages that were settled within a time, in the order in which the radio settled them."""
     verdicts = log.table("verdicts", start_s=start_s, end_s=end_s)
-    offers = log.table("transmit_requests", end_s=end_s)
-    return list(join(verdicts, offers))
+    return list(join(verdicts, log.table("transmit_requests", end_s=end_s)))
 
 
-def join(verdicts: Table, offers: Table) -> Iterable[MessageTrace]:
-    """verdicts: of any stretch; offers: from the start of the mission, since they are counted."""
+def join(verdicts: Table, requests: Table) -> Iterator[MessageTrace]:
+    """verdicts: of any stretch; requests: from the start of the mission, since they are counted."""
     payloads: dict[tuple[int, int], bytes] = {}
     counts: dict[int, int] = {}
-    for robot, payload in zip(offers["robot"].tolist(), offers["payload"], strict=True):
+    for robot, payload in zip(requests["robot"].tolist(), requests["payload"], strict=True):
         counts[robot] = counts.get(robot, 0) + 1
         payloads[robot, counts[robot]] = payload
     for row in range(len(verdicts)):
         source, number = int(verdicts["source"][row]), int(verdicts["message"][row])
-        message = opened(payloads.get((source, number), b""))
+        message = decode_payload(payloads.get((source, number), b""))
         yield MessageTrace(
             source=source,
             receiver=int(verdicts["receiver"][row]),

@@ -1,10 +1,16 @@
-"""What happened to whom and when: presence, reigns, modes, faults. From tables, for figures and text."""
+"""What happened to whom and when: departures, leaders, modes, faults; for figures and text."""
 
 from dataclasses import dataclass
+from itertools import groupby
+from operator import itemgetter
+from typing import NamedTuple
 
 import numpy as np
+from msgspec.structs import replace
 
-from onehop.analysis.tables import Column, Table
+from onehop.analysis.columns import Column
+from onehop.analysis.tables import Table
+from onehop.contracts.leadership import LeadershipHistory
 from onehop.contracts.messages import LeadershipTerm
 from onehop.contracts.sections import FaultSection
 
@@ -32,61 +38,58 @@ class Span:
 def departures(poses: Table, left: Table) -> list[LastSeen]:
     """Everyone who left, in order of time."""
     found = []
-    for robot, at_s, why in zip(left["robot"], left["time_s"], left["why"], strict=True):
+    for robot, at_s, why in left.rows("robot", "time_s", "why"):
         own = poses.where((poses["robot"] == robot) & (poses["time_s"] < at_s))
         if len(own):
             place = float(own["x"][-1]), float(own["y"][-1])
-            found.append(LastSeen(int(robot), float(at_s), *place, str(why)))
+            found.append(LastSeen(robot, at_s, *place, why))
     return found
 
 
-def reigns(status: Table) -> list[LeadershipTerm]:
-    """Every roster from the moment its leader began to act on it, in order of time.
+class Leadership(NamedTuple):
+    """Who led when.
 
-    The same rule as the referee's (world_server/core/referee.py), so that a torn log has them too.
+    terms: every leadership term, as the referee has them. main: of those, who led most of the team at
+    each moment: one line even while the team is split (of equal ones the lowest leader id counts).
     """
-    ruling = status.where(status["robot"] == status["leader"])
-    found: list[LeadershipTerm] = []
-    before: dict[int, tuple[int, int, tuple[int, ...], str]] = {}
-    step = tick_step(status)
-    for row in range(len(ruling)):
-        robot, tick = int(ruling["robot"][row]), int(ruling["tick"][row])
-        roster = int(ruling["epoch"][row]), ruling["members"][row], str(ruling["shape"][row])
-        last = before.get(robot)
-        before[robot] = (tick, *roster)
-        if last is None or last[0] < tick - step or last[1:] != roster:
-            found.append(LeadershipTerm(float(ruling["time_s"][row]), robot, *roster))
-    return found
+
+    terms: list[LeadershipTerm]
+    main: list[LeadershipTerm]
 
 
-def main_line(status: Table) -> list[LeadershipTerm]:
-    """Who led most of the team at each moment: one line of rosters even while the team is split.
+def leadership(status: Table, left: Table, period_ns: int) -> Leadership:
+    """From the tables `status` and `departures`, sound or torn.
 
-    The largest roster that its leader acts on counts; of equal ones the one of the lowest leader id.
+    What a robot says in tick k takes effect at the beginning of tick k + 1, unless it has left by then.
     """
-    ruling = status.where(status["robot"] == status["leader"])
-    size = np.array([len(members) for members in ruling["members"]], dtype=np.int64)
-    order = np.lexsort((ruling["robot"], -size, ruling["tick"]))
-    _, first = np.unique(ruling["tick"][order], return_index=True)
-    found: list[LeadershipTerm] = []
-    for row in order[first].tolist():
-        reign = LeadershipTerm(
-            float(ruling["time_s"][row]), int(ruling["robot"][row]), int(ruling["epoch"][row]),
-            ruling["members"][row], str(ruling["shape"][row]),
-        )  # fmt: skip
-        if not found or _same_rule(found[-1]) != _same_rule(reign):
-            found.append(reign)
-    return found
+    history = LeadershipHistory()
+    main: list[LeadershipTerm] = []
+    leaving = list(left.rows("tick", "robot"))
+    statuses = status.rows("tick", "robot", "leader", "epoch", "members", "shape")
+    for tick, rows in groupby(statuses, key=itemgetter(0)):
+        gone = set()
+        while leaving and leaving[0][0] <= tick + 1:
+            at, robot = leaving.pop(0)
+            history.on_departure(robot)
+            if at == tick + 1:
+                gone.add(robot)
+        now_s = (tick + 1) * period_ns / 1e9
+        for _, robot, leader, epoch, members, shape in rows:
+            if robot not in gone:
+                history.on_status(now_s, robot, leader, epoch, members, shape)
+        _follow_main(main, history, now_s)
+    return Leadership(history.terms, main)
 
 
-def _same_rule(reign: LeadershipTerm) -> tuple[int, int, tuple[int, ...], str]:
-    return reign.leader, reign.epoch, reign.members, reign.shape
-
-
-def tick_step(table: Table) -> int:
-    """Ticks between two rows of the same thing."""
-    ticks = np.unique(table["tick"])
-    return int(np.diff(ticks).min()) if len(ticks) > 1 else 1
+def _follow_main(main: list[LeadershipTerm], history: LeadershipHistory, now_s: float) -> None:
+    """Add the term of whoever leads most robots now, if it is another one than before."""
+    largest = min(
+        history.acting.values(), key=lambda term: (-len(term.members), term.leader), default=None
+    )
+    if largest is not None:
+        current = replace(largest, at_s=now_s)
+        if not main or replace(main[-1], at_s=now_s) != current:
+            main.append(current)
 
 
 def spans(time_s: Column, values: Column, gap_s: float, shortest_s: float = 0.0) -> list[Span]:

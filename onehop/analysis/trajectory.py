@@ -15,7 +15,7 @@ from onehop.analysis.ground import draw_ground
 from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, INK, robot_colours
 from onehop.analysis.tables import Table, build
-from onehop.analysis.timeline import LastSeen, departures, describe_fault, main_line
+from onehop.analysis.timeline import LastSeen, departures, describe_fault, leadership
 from onehop.contracts.messages import LeadershipTerm
 from onehop.wire.log_reader import LogFile
 
@@ -36,8 +36,8 @@ def draw_trajectory(log: LogFile, path: Path) -> None:
 
     Raises LogError when the log is damaged.
     """
-    opened = Log(log)
-    figure = figure_of(opened, _tables(opened))
+    mission = Log(log)
+    figure = figure_of(mission, _tables(mission))
     FigureCanvasAgg(figure)
     figure.savefig(path, dpi=130)
 
@@ -64,7 +64,7 @@ def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
         _draw_departure(axes, departure, colours[departure.robot])
     for x, y in zip(tables["contacts"]["x"], tables["contacts"]["y"], strict=True):
         axes.plot(x, y, marker="P", color=BAD, markersize=7, zorder=8)
-    _draw_reigns(axes, poses, main_line(status), colours)
+    _draw_leaders(axes, poses, leadership(status, tables["departures"], log.period_ns).main, colours)
     axes.legend(
         handles=_legend(log, gone, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
         frameon=False, fontsize=9, borderaxespad=0.0,
@@ -110,27 +110,27 @@ def _draw_formations(axes: Axes, poses: Table, status: Table, colours: dict[int,
     for time_s in _snapshots(status):
         tick = known[np.searchsorted(status["time_s"][np.searchsorted(status["tick"], known)], time_s)]
         here = poses.where(poses["tick"] == tick)
-        told = status.where(status["tick"] == tick)
+        said = status.where(status["tick"] == tick)
         places = {
             int(robot): (float(x), float(y))
             for robot, x, y in zip(here["robot"], here["x"], here["y"], strict=True)
         }
-        for robot, leader in zip(told["robot"].tolist(), told["leader"].tolist(), strict=True):
+        for robot, leader in zip(said["robot"].tolist(), said["leader"].tolist(), strict=True):
             if robot != leader and leader in places and robot in places:
                 links.append((places[leader], places[robot]))
         for row, robot in enumerate(here["robot"].tolist()):
             _draw_robot(axes, here, row, colours[robot])
-        stale = _label_time(axes, time_s, told, places, stale)
+        stale = _label_time(axes, time_s, said, places, stale)
     axes.add_collection(LineCollection(links, colors=INK, linewidths=0.6, alpha=0.55, zorder=3.5))
 
 
 def _label_time(
-    axes: Axes, time_s: float, told: Table, places: dict[int, tuple[float, float]],
+    axes: Axes, time_s: float, said: Table, places: dict[int, tuple[float, float]],
     before: tuple[float, float],
 ) -> tuple[float, float]:  # fmt: skip
     """Write the time beside the leader unless the last label stands there already."""
-    ruling = [int(i) for i in told["robot"][told["robot"] == told["leader"]] if int(i) in places]
-    spot = places[ruling[0]] if ruling else next(iter(places.values()), before)
+    acting = [int(i) for i in said["robot"][said["robot"] == said["leader"]] if int(i) in places]
+    spot = places[acting[0]] if acting else next(iter(places.values()), before)
     if np.hypot(spot[0] - before[0], spot[1] - before[1]) < 3.0:
         return before
     axes.annotate(
@@ -174,45 +174,47 @@ def _draw_departure(axes: Axes, departure: LastSeen, colour: str) -> None:
     )  # fmt: skip
 
 
-def _draw_reigns(axes: Axes, poses: Table, line: list[LeadershipTerm], colours: dict[int, str]) -> None:
+def _draw_leaders(
+    axes: Axes, poses: Table, terms: list[LeadershipTerm], colours: dict[int, str]
+) -> None:
     """A ring where somebody takes the lead over from another; those that lasted have their name."""
-    ends = [*(reign.at_s for reign in line[1:]), np.inf] if line else []
+    ends = [*(term.at_s for term in terms[1:]), np.inf] if terms else []
     previous: int | None = None
     named: list[tuple[float, float]] = []
-    for reign, end_s in zip(line, ends, strict=True):
-        if previous in (None, reign.leader):
-            previous = reign.leader
+    for term, end_s in zip(terms, ends, strict=True):
+        if previous in (None, term.leader):
+            previous = term.leader
             continue
-        previous = reign.leader
-        own = poses.of(reign.leader)
-        row = min(int(np.searchsorted(own["time_s"], reign.at_s)), len(own) - 1)
+        previous = term.leader
+        own = poses.of(term.leader)
+        row = min(int(np.searchsorted(own["time_s"], term.at_s)), len(own) - 1)
         spot = float(own["x"][row]), float(own["y"][row])
         axes.plot(
             *spot, marker="o", markersize=14, markerfacecolor="none", markeredgewidth=2.2,
-            markeredgecolor=colours[reign.leader], zorder=7,
+            markeredgecolor=colours[term.leader], zorder=7,
         )  # fmt: skip
         crowded = any(abs(spot[0] - x) < 12.0 and abs(spot[1] - y) < 3.0 for x, y in named)
-        if end_s - reign.at_s < _NAMED_S or crowded:
+        if end_s - term.at_s < _NAMED_S or crowded:
             continue
         named.append(spot)
         axes.annotate(
-            f"{reign.leader} leads, {reign.at_s:.0f} s", spot, textcoords="offset points",
+            f"{term.leader} leads, {term.at_s:.0f} s", spot, textcoords="offset points",
             xytext=(-12, 9), ha="right", fontsize=9, fontweight="bold", color=INK, zorder=9,
             path_effects=_HALO,
         )  # fmt: skip
 
 
 def _legend(log: Log, gone: list[LastSeen], colours: dict[int, str]) -> list[Line2D]:
-    fates = {departure.robot: f"{departure.why}, {departure.at_s:.0f} s" for departure in gone}
+    outcomes = {departure.robot: f"{departure.why}, {departure.at_s:.0f} s" for departure in gone}
     if log.summary is not None:
         lost = {
             entry["robot"]: f"{entry['why']}, {entry['at_s']:.0f} s" for entry in log.summary["lost"]
         }
-        fates = {**fates, **lost, **dict.fromkeys(log.summary["arrived"], "arrived")}
+        outcomes = {**outcomes, **lost, **dict.fromkeys(log.summary["arrived"], "arrived")}
     handles = [
         Line2D(
             [], [], color=colour, marker=(3, 0, -90), markersize=8, linewidth=1.5,
-            label=f"{robot}  {fates.get(robot, '')}".rstrip(),
+            label=f"{robot}  {outcomes.get(robot, '')}".rstrip(),
         )
         for robot, colour in colours.items()
     ]  # fmt: skip

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from onehop.analysis.difference import Comparison, compare
-from onehop.commands.opening import open_with_warning
+from onehop.commands.logs import open_with_warning
 from onehop.commands.output import emit_json
 
 
@@ -35,9 +35,18 @@ def _as_json(found: Comparison) -> dict[str, Any]:
     }  # fmt: skip
 
 
+def _brief(value: Any) -> str:
+    """A value of a scenario on one line; of a fault only the keys that are set."""
+    if isinstance(value, dict):
+        return ", ".join(f"{key} {inner!r}" for key, inner in value.items() if inner)
+    if isinstance(value, list | tuple) and any(isinstance(inner, dict) for inner in value):
+        return "; ".join(_brief(inner) for inner in value)
+    return repr(value) if value or not isinstance(value, list | tuple) else "none"
+
+
 def _print(found: Comparison, period: float) -> None:
     for key, one, other in found.scenario:
-        print(f"scenario {key}: {one!r:.120} | {other!r:.120}")
+        print(f"scenario {key}:\n  a: {_brief(one):.120}\n  b: {_brief(other):.120}")
     first = found.first
     if first is None:
         print(f"no difference in {found.messages} messages of {found.ticks} ticks")

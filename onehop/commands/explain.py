@@ -3,8 +3,8 @@
 from pathlib import Path
 
 from onehop.analysis.explanation import explain as explain_moment
-from onehop.analysis.explanation_text import tell
-from onehop.commands.opening import open_with_warning
+from onehop.analysis.explanation_text import explanation_text
+from onehop.commands.logs import open_with_warning
 from onehop.commands.output import emit_json
 
 
@@ -14,5 +14,5 @@ def explain(path: Path, robot: int, at_s: float, window_s: float, as_json: bool)
     if as_json:
         emit_json(found.as_json())
     else:
-        print("\n".join(tell(found)))
+        print("\n".join(explanation_text(found)))
     return 0

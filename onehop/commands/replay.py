@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from onehop.commands.opening import open_with_warning
+from onehop.commands.logs import open_with_warning
 from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
 from onehop.drivers.replay import Divergence, Report
@@ -72,10 +72,10 @@ def _plain(value: Any) -> Any:
 
 
 def _print(report: Report, period: float, what_if: bool) -> None:
-    names = ", ".join(map(str, report.robots))
-    print(f"{report.ticks} ticks, robots {names}: {report.compared} messages compared")
+    names = f"robot{'s' if len(report.robots) > 1 else ''} {', '.join(map(str, report.robots))}"
+    print(f"{report.ticks} ticks, {names}: {report.compared} messages compared")
     if report.first is None:
-        print("0 divergences: everything was said again, byte for byte")
+        print("0 divergences: every message is the same, byte for byte")
         return
     print(f"{report.divergences} divergences{' under the changed setting' if what_if else ''}")
     print(f"first: {_sentence(report.first, period)}")

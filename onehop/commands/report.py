@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from onehop.analysis.report.page import write_report
-from onehop.commands.opening import open_with_warning
+from onehop.commands.logs import open_with_warning
 from onehop.commands.output import emit_json
 
 

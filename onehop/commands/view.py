@@ -7,7 +7,7 @@ from typing import Any
 
 from onehop.analysis.view.layer import write_view
 from onehop.analysis.view.rerun_layout import write_layout
-from onehop.commands.opening import open_with_warning
+from onehop.commands.logs import open_with_warning
 from onehop.commands.output import emit_json, say
 from onehop.contracts.errors import InputError
 

@@ -30,6 +30,24 @@ class Shape(StrEnum):
     HEXAGON = "hexagon"
 
 
+class LossReason(StrEnum):
+    """Why a leader gives a follower up: the `reason` of its note `lost_follower`."""
+
+    UNANSWERED = "unanswered"
+    NOT_IN_POSITION = "not in position at setup"
+
+
+_LOSS_IN_WORDS: dict[str, str] = {
+    LossReason.UNANSWERED: ": its commands stayed unanswered",
+    LossReason.NOT_IN_POSITION: ": not in position when setup ended",
+}
+
+
+def loss_in_words(reason: str) -> str:
+    """End of a sentence that says who was given up; "" for a note that gives no reason."""
+    return _LOSS_IN_WORDS.get(reason, f": {reason}" if reason else "")
+
+
 class Status(Value, frozen=True):
     """What a robot says of itself in every action, for people, the referee and the checker.
 

@@ -20,7 +20,7 @@ from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
 from onehop.wire.codec import decode, encode
 from onehop.wire.difference import first_difference
-from onehop.wire.log_reader import LogFile, Tick
+from onehop.wire.log_reader import LogFile, LoggedTick
 from radio_proxy.core.radio import Radio
 from robot_agent.core.robot import Robot
 from world_server.core.world import World
@@ -56,7 +56,7 @@ class Report:
             self.first = divergence
 
 
-Player = Callable[[Tick], Iterator[tuple[str, bytes]]]
+Player = Callable[[LoggedTick], Iterator[tuple[str, bytes]]]
 """Takes the recorded messages of a tick, gives (bus key, bytes) of what a component says to them."""
 
 
@@ -118,7 +118,7 @@ class _Robots:
         self._robots = robots
         self._living: dict[int, tuple[int, Robot]] = {}
 
-    def play(self, tick: Tick) -> Iterator[tuple[str, bytes]]:
+    def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         recorded = dict(tick.messages)
         for i in self._robots:
             seen, heard = recorded.get(topics.obs(i)), recorded.get(topics.rx(i))
@@ -135,7 +135,7 @@ class _Robots:
 def _radio(scenario: Scenario, walls: WallMap) -> Player:
     radio = Radio(radio_briefing(scenario, walls.segments))
 
-    def play(tick: Tick) -> Iterator[tuple[str, bytes]]:
+    def play(tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         data = tick.get(topics.TRUTH)
         if data is None:
             return
@@ -153,7 +153,7 @@ class _WorldPlayer:
     def __init__(self, scenario: Scenario, walls: WallMap) -> None:
         self._world = World(scenario, walls)
 
-    def play(self, tick: Tick) -> Iterator[tuple[str, bytes]]:
+    def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         data = tick.get(topics.TRUTH)
         if data is None:
             return

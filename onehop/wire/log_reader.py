@@ -30,7 +30,7 @@ from onehop.wire.selection import select, walk
 
 
 @dataclass(frozen=True, slots=True)
-class Tick:
+class LoggedTick:
     """All wire messages of one tick, in canonical order."""
 
     tick: int
@@ -110,14 +110,14 @@ class LogFile:
                     str(self.path), f"damaged near byte {stream.tell()} ({error})", "use a copy of it"
                 ) from None
 
-    def ticks(self) -> Iterator[Tick]:
+    def ticks(self) -> Iterator[LoggedTick]:
         """Every tick with its wire messages, up to where the log is torn."""
         messages = select(self.path, lambda _: True, self.bundle.scenario.clock.period_ns)
         for number, group in groupby(messages, key=itemgetter(0)):
-            yield _in_order(Tick(number, [(key, data) for _, key, data in group]))
+            yield _in_order(LoggedTick(number, [(key, data) for _, key, data in group]))
 
 
-def _in_order(tick: Tick) -> Tick:
+def _in_order(tick: LoggedTick) -> LoggedTick:
     tick.messages.sort(key=lambda message: canonical_rank(message[0]))
     return tick
 

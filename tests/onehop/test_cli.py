@@ -25,11 +25,11 @@ def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_elect_gives_leader_shape_and_slots_as_json() -> None:
-    told = onehop("elect", "1,2,4,5", "--json")
-    assert told.returncode == 0
-    assert json.loads(told.stdout)["leader"] == 2  # thesis 3.3.5, figure 3.4 (a)
-    assert json.loads(told.stdout)["shape"] == "diamond"
-    assert [slot["robot"] for slot in json.loads(told.stdout)["slots"]] == [1, 4, 5]
+    answer = onehop("elect", "1,2,4,5", "--json")
+    assert answer.returncode == 0
+    assert json.loads(answer.stdout)["leader"] == 2  # thesis 3.3.5, figure 3.4 (a)
+    assert json.loads(answer.stdout)["shape"] == "diamond"
+    assert [slot["robot"] for slot in json.loads(answer.stdout)["slots"]] == [1, 4, 5]
 
 
 @pytest.mark.parametrize(
@@ -47,11 +47,11 @@ def test_elect_gives_leader_shape_and_slots_as_json() -> None:
     ],
 )
 def test_bad_input_is_one_line_on_stderr_and_status_2(arguments: tuple[str, ...]) -> None:
-    told = onehop(*arguments)
-    assert told.returncode == 2
-    assert told.stdout == ""
-    assert told.stderr.startswith("onehop: ")
-    assert told.stderr.count("\n") == 1
+    answer = onehop(*arguments)
+    assert answer.returncode == 2
+    assert answer.stdout == ""
+    assert answer.stderr.startswith("onehop: ")
+    assert answer.stderr.count("\n") == 1
 
 
 def test_without_a_command_the_help_comes_and_status_2() -> None:
@@ -63,24 +63,24 @@ def test_without_a_command_the_help_comes_and_status_2() -> None:
 
 @pytest.mark.parametrize("command", ["run", "replay", "elect", "link", "saturate", "plan", "doctor"])
 def test_help_has_an_example(command: str) -> None:
-    told = onehop(command, "--help")
-    assert told.returncode == 0
-    assert f"Example: onehop {command}" in told.stdout
+    answer = onehop(command, "--help")
+    assert answer.returncode == 0
+    assert f"Example: onehop {command}" in answer.stdout
 
 
 def test_a_start_in_an_obstacle_is_refused_with_the_nearest_free_point(tmp_path: Path) -> None:
     (tmp_path / "field.toml").write_text(FIELD)
-    told = onehop("run", tmp_path / "field.toml", "--driver", "inline", "--start", "20,26")
-    assert told.returncode == 2
-    assert "field.toml: start" in told.stderr
-    assert "nearest free point" in told.stderr
+    answer = onehop("run", tmp_path / "field.toml", "--driver", "inline", "--start", "20,26")
+    assert answer.returncode == 2
+    assert "field.toml: start" in answer.stderr
+    assert "nearest free point" in answer.stderr
 
 
 def test_an_inline_run_gives_the_promised_keys_and_files(tmp_path: Path) -> None:
     (tmp_path / "field.toml").write_text(FIELD)
-    told = onehop("run", "field.toml", "--driver", "inline", "--json", "--out", "here", cwd=tmp_path)
-    summary = json.loads(told.stdout)
-    assert told.returncode == 0
+    answer = onehop("run", "field.toml", "--driver", "inline", "--json", "--out", "here", cwd=tmp_path)
+    summary = json.loads(answer.stdout)
+    assert answer.returncode == 0
     assert summary["outcome"] == "arrived"
     assert set(summary) == {
         "outcome", "reason", "arrived", "lost", "leaders", "ticks", "sim_s", "wall_s", "ticks_per_s",
@@ -97,7 +97,7 @@ def test_the_log_of_a_run_has_the_viewer_layer_unless_told_otherwise(
 ) -> None:
     bundle = field(tmp_path, "clock.limit_s=2")
     printed = log_of(bundle, tmp_path / "plain.mcap")
-    told = onehop(
+    answer = onehop(
         "run", "field.toml", "--driver", "inline", "--json", "--out", "here", option,
         "--set", "clock.limit_s=2", cwd=tmp_path,
     )  # fmt: skip
@@ -106,12 +106,12 @@ def test_the_log_of_a_run_has_the_viewer_layer_unless_told_otherwise(
         summary = make_reader(stream).get_summary()
     assert summary is not None
     assert ("/tf" in {channel.topic for channel in summary.channels.values()}) is seen
-    assert json.loads(told.stdout)["digest"] == digest(LogFile(log)) == printed
+    assert json.loads(answer.stdout)["digest"] == digest(LogFile(log)) == printed
 
 
 def test_a_run_that_does_not_arrive_has_status_1(tmp_path: Path) -> None:
     (tmp_path / "field.toml").write_text(FIELD)
-    told = onehop(
+    answer = onehop(
         "run",
         "field.toml",
         "--driver",
@@ -121,25 +121,25 @@ def test_a_run_that_does_not_arrive_has_status_1(tmp_path: Path) -> None:
         "clock.limit_s=2",
         cwd=tmp_path,
     )
-    assert told.returncode == 1
-    assert "failed: time limit of 2 s" in told.stdout
+    assert answer.returncode == 1
+    assert "failed: time limit of 2 s" in answer.stdout
 
 
 def test_replay_of_a_sound_log_says_0_divergences(recorded: Path) -> None:
-    told = onehop("replay", recorded, "--json")
-    assert told.returncode == 0
-    answer = json.loads(told.stdout)
-    assert (answer["ticks"], answer["robots"], answer["divergences"]) == (100, [1, 2, 3, 4], 0)
-    assert answer["first"] is None
+    answer = onehop("replay", recorded, "--json")
+    assert answer.returncode == 0
+    found = json.loads(answer.stdout)
+    assert (found["ticks"], found["robots"], found["divergences"]) == (100, [1, 2, 3, 4], 0)
+    assert found["first"] is None
 
 
 def test_replay_refuses_a_robot_that_is_not_in_the_team(recorded: Path) -> None:
-    told = onehop("replay", recorded, "--robot", "9")
-    assert told.returncode == 2
-    assert "one of 1, 2, 3, 4" in told.stderr
+    answer = onehop("replay", recorded, "--robot", "9")
+    assert answer.returncode == 2
+    assert "one of 1, 2, 3, 4" in answer.stderr
 
 
 def test_doctor_finds_everything_that_a_run_needs_here() -> None:
-    told = onehop("doctor", "--json")
-    assert told.returncode == 0
-    assert json.loads(told.stdout)["healthy"] is True
+    answer = onehop("doctor", "--json")
+    assert answer.returncode == 0
+    assert json.loads(answer.stdout)["healthy"] is True

@@ -10,9 +10,10 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from onehop.contracts.geometry import Pose
+from onehop.contracts.leadership import LeadershipHistory
 from onehop.contracts.messages import LeadershipTerm, Lost, Note, Outcome, Presence
 from onehop.contracts.scenario import Scenario
-from onehop.contracts.team import Mode, Shape, Status
+from onehop.contracts.team import Mode, Shape, Status, loss_in_words
 
 STILL = 0.02
 """Speed below which a robot stands still [m/s]."""
@@ -44,6 +45,14 @@ class TickSummary(NamedTuple):
         return None if status is None else status.mode
 
 
+class _GivenUp(NamedTuple):
+    """A leader's note that it gave a robot up. after: how many leadership terms had begun by then."""
+
+    by: int
+    reason: str
+    after: int
+
+
 class Referee:
     """Watches one mission, tick by tick."""
 
@@ -53,150 +62,155 @@ class Referee:
         self._robots = scenario.team.robots
         self._limit_ns = round(scenario.clock.limit_s * 1e9)
         self._moved_ns = 0
-        self._reigns: list[LeadershipTerm] = []
-        self._crowned: dict[int, Status] = {}
+        self._leadership = LeadershipHistory()
         self._departed: dict[int, Lost] = {}
-        self._last_words: dict[int, str] = {}
+        self._given_up: dict[int, list[_GivenUp]] = {robot: [] for robot in self._robots}
+        self._last_notes: dict[int, str] = {}
 
     def on_departure(self, robot: int, why: str, time_ns: int) -> None:
         """A robot has left the mission."""
         self._departed[robot] = Lost(robot=robot, at_s=time_ns / 1e9, why=why)
-        self._crowned.pop(robot, None)
+        self._leadership.on_departure(robot)
 
     def on_return(self, robot: int) -> None:
         """A robot takes part again."""
         self._departed.pop(robot, None)
 
     def on_notes(self, robot: int, notes: tuple[Note, ...]) -> None:
-        """Remember the last thing a robot had to say, other than in which mode it is."""
+        """Remember whom a leader gave up and why, and the last note that is not about a mode."""
         for note in notes:
             if note.kind != "mode":
-                self._last_words[robot] = note.kind.replace("_", " ")
+                self._last_notes[robot] = note.kind.replace("_", " ")
+            if note.kind == "lost_follower":
+                self._on_given_up(robot, note)
 
-    def judge(self, scene: TickSummary, hope: bool) -> Outcome | None:
+    def _on_given_up(self, leader: int, note: Note) -> None:
+        reason, lost = note.data.get("reason", ""), note.data.get("robots", ())
+        record = _GivenUp(leader, str(reason), len(self._leadership.terms))
+        for robot in lost if isinstance(lost, tuple) else ():
+            self._given_up.setdefault(robot, []).append(record)
+
+    def judge(self, now: TickSummary, hope: bool) -> Outcome | None:
         """The outcome, if the mission has one by now. hope: somebody will yet be restarted."""
-        self._watch(scene)
-        verdict = self._verdict(scene, hope)
-        return None if verdict is None else self.close(*verdict, scene)
+        self._watch(now)
+        verdict = self._verdict(now, hope)
+        return None if verdict is None else self.close(*verdict, now)
 
-    def close(self, outcome: str, reason: str, scene: TickSummary) -> Outcome:
+    def close(self, outcome: str, reason: str, now: TickSummary) -> Outcome:
         """The final account, whatever ended the mission."""
-        arrived = self._arrived(scene) if outcome == "arrived" else ()
+        arrived = self._arrived(now) if outcome == "arrived" else ()
         return Outcome(
             outcome=outcome,
             reason=reason,
             arrived=arrived,
-            lost=tuple(self._loss(robot, scene) for robot in self._robots if robot not in arrived),
-            leaders=tuple(self._reigns),
-            ticks=scene.ticks,
-            sim_s=scene.time_ns / 1e9,
-            collisions=scene.collisions,
+            lost=tuple(self._loss(robot, now) for robot in self._robots if robot not in arrived),
+            leaders=tuple(self._leadership.terms),
+            ticks=now.ticks,
+            sim_s=now.time_ns / 1e9,
+            collisions=now.collisions,
         )
 
-    def _watch(self, scene: TickSummary) -> None:
-        """Note who moves, and who begins to act as a leader with which roster."""
-        for one in scene.present:
+    def _watch(self, now: TickSummary) -> None:
+        """Note who moves, and who acts as leader on which roster."""
+        for one in now.present:
             robot = one.robot
-            if not -STILL < one.twist.v < STILL or robot in scene.waiting:
-                self._moved_ns = scene.time_ns
-            status = scene.statuses.get(robot)
-            if status is None or status.leader != robot:
-                self._crowned.pop(robot, None)
-                continue
-            before = self._crowned.get(robot)
-            self._crowned[robot] = status
-            if before is None or _roster(before) != _roster(status):
-                self._reigns.append(
-                    LeadershipTerm(
-                        at_s=scene.time_ns / 1e9,
-                        leader=robot,
-                        epoch=status.epoch,
-                        members=status.members,
-                        shape=status.shape.value,
-                    )
-                )
+            if not -STILL < one.twist.v < STILL or robot in now.waiting:
+                self._moved_ns = now.time_ns
+            status = now.statuses.get(robot)
+            if status is not None:
+                self._leadership.on_status(
+                    now.time_ns / 1e9, robot, status.leader, status.epoch, status.members,
+                    status.shape.value,
+                )  # fmt: skip
 
-    def _verdict(self, scene: TickSummary, hope: bool) -> tuple[str, str] | None:
-        if not scene.present:
+    def _verdict(self, now: TickSummary, hope: bool) -> tuple[str, str] | None:
+        if not now.present:
             return None if hope else ("failed", "no robot is left")
-        if scene.time_ns >= self._limit_ns:
-            if self._arrived(scene):
-                return "arrived", self._arrival(scene) + " when the time was up"
+        if now.time_ns >= self._limit_ns:
+            if self._arrived(now):
+                return "arrived", self._arrival(now) + " when the time was up"
             return "failed", f"time limit of {self._limit_ns / 1e9:g} s"
-        if self._moved_ns == scene.time_ns:
+        if self._moved_ns == now.time_ns:
             return None
-        stopped = all(scene.mode(one.robot) is Mode.STOPPED for one in scene.present)
-        rested = scene.time_ns - self._moved_ns >= _REST_S * 1e9
-        if (stopped or rested) and self._arrived(scene):
-            return "arrived", self._arrival(scene)
+        stopped = all(now.mode(one.robot) is Mode.STOPPED for one in now.present)
+        rested = now.time_ns - self._moved_ns >= _REST_S * 1e9
+        if (stopped or rested) and self._arrived(now):
+            return "arrived", self._arrival(now)
         if stopped and rested:
-            return "failed", self._stop_reason(scene)
+            return "failed", self._stop_reason(now)
         return None
 
-    def _arrival(self, scene: TickSummary) -> str:
-        leaders = ", ".join(str(robot) for robot in self._leaders_at_goal(scene))
-        return f"robot {leaders} at the goal with {len(self._arrived(scene))} of {len(self._robots)}"
+    def _arrival(self, now: TickSummary) -> str:
+        leaders = ", ".join(str(robot) for robot in self._leaders_at_goal(now))
+        return f"robot {leaders} at the goal with {len(self._arrived(now))} of {len(self._robots)}"
 
-    def _stop_reason(self, scene: TickSummary) -> str:
-        """Why nobody drives any more, in the words of those who lead."""
-        words = [
-            f"robot {one.robot}: {self._last_words[one.robot]}"
-            for one in scene.present
-            if one.robot in self._last_words and one.robot in self._crowned
+    def _stop_reason(self, now: TickSummary) -> str:
+        """Why nobody drives any more, by the last notes of those who lead."""
+        notes = [
+            f"robot {one.robot}: {self._last_notes[one.robot]}"
+            for one in now.present
+            if one.robot in self._last_notes and one.robot in self._leadership.acting
         ]
-        return "everyone stopped before the goal" + (f" ({'; '.join(words)})" if words else "")
+        return "everyone stopped before the goal" + (f" ({'; '.join(notes)})" if notes else "")
 
     def _from_goal(self, pose: Pose) -> float:
         return math.hypot(pose.x - self._goal.x, pose.y - self._goal.y)
 
-    def _leaders_at_goal(self, scene: TickSummary) -> list[int]:
+    def _leaders_at_goal(self, now: TickSummary) -> list[int]:
         reach = self._goal.tolerance + _MARGIN
         return [
             one.robot
-            for one in scene.present
-            if one.robot in self._crowned and self._from_goal(one.pose) <= reach
+            for one in now.present
+            if one.robot in self._leadership.acting and self._from_goal(one.pose) <= reach
         ]
 
-    def _arrived(self, scene: TickSummary) -> tuple[int, ...]:
+    def _arrived(self, now: TickSummary) -> tuple[int, ...]:
         """Ids of those who obey a leader at the goal, are on its roster and within its formation."""
         arrived: list[int] = []
-        for leader in self._leaders_at_goal(scene):
-            roster = self._crowned[leader]
-            reach = _extent(roster, self._spacing) + self._goal.tolerance + _MARGIN
-            for one in scene.present:
-                status = scene.statuses.get(one.robot)
+        for leader in self._leaders_at_goal(now):
+            term = self._leadership.acting[leader]
+            reach = _extent(term, self._spacing) + self._goal.tolerance + _MARGIN
+            for one in now.present:
+                status = now.statuses.get(one.robot)
                 obeys = status is not None and status.leader == leader
-                if obeys and one.robot in roster.members and self._from_goal(one.pose) <= reach:
+                if obeys and one.robot in term.members and self._from_goal(one.pose) <= reach:
                     arrived.append(one.robot)
         return tuple(sorted(arrived))
 
-    def _loss(self, robot: int, scene: TickSummary) -> Lost:
+    def _loss(self, robot: int, now: TickSummary) -> Lost:
         if robot in self._departed:
             return self._departed[robot]
-        leaders = self._leaders_at_goal(scene) or [reign.leader for reign in self._reigns[-1:]]
+        leaders = self._leaders_at_goal(now) or [term.leader for term in self._leadership.terms[-1:]]
         dropped = self._dropped(robot, leaders[0]) if leaders else None
-        return dropped or Lost(robot=robot, at_s=scene.time_ns / 1e9, why="did not arrive")
+        return dropped or Lost(robot=robot, at_s=now.time_ns / 1e9, why="did not arrive")
 
     def _dropped(self, robot: int, leader: int) -> Lost | None:
-        """When the line of rosters that led to `leader` lost a robot for good, and by whom."""
+        """When the rosters that led to `leader` lost a robot for good, and why."""
         dropped: Lost | None = None
-        for reign in self._reigns:
-            if leader not in reign.members:
+        last_with_robot = -1
+        for number, term in enumerate(self._leadership.terms):
+            if leader not in term.members:
                 continue
-            if robot in reign.members:
-                dropped = None
+            if robot in term.members:
+                dropped, last_with_robot = None, number
             elif dropped is None:
-                why = f"dropped from the roster of robot {reign.leader}"
-                dropped = Lost(robot=robot, at_s=reign.at_s, why=why)
+                why = self._why_dropped(robot, term, range(last_with_robot + 1, number + 1))
+                dropped = Lost(robot=robot, at_s=term.at_s, why=why)
         return dropped
 
+    def _why_dropped(self, robot: int, term: LeadershipTerm, between: range) -> str:
+        """The word of the member of a roster who gave up a robot that the roster lacks.
 
-def _roster(status: Status) -> tuple[int, tuple[int, ...], Shape]:
-    return status.epoch, status.members, status.shape
+        between: how many terms had begun at any time from the last roster with the robot to this one.
+        """
+        for given_up in reversed(self._given_up[robot]):
+            if given_up.by in term.members and given_up.after in between:
+                return f"given up by robot {given_up.by}{loss_in_words(given_up.reason)}"
+        return f"dropped from the roster of robot {term.leader}"
 
 
-def _extent(status: Status, spacing: float) -> float:
+def _extent(term: LeadershipTerm, spacing: float) -> float:
     """How far behind its leader the last slot of a formation may lie, and half a spacing more [m]."""
-    followers = len(status.members) - 1
-    ranks = followers if status.shape is Shape.COLUMN else (followers + 1) // 2
+    followers = len(term.members) - 1
+    ranks = followers if term.shape == Shape.COLUMN else (followers + 1) // 2
     return (ranks + 0.5) * spacing

@@ -54,17 +54,17 @@ def save(figure: Figure, folder: Path, stem: str) -> Path:
     return path
 
 
-def mark_turns(axes: Axes, material: ReportData, named: bool = False) -> None:
+def mark_turns(axes: Axes, report: ReportData, named: bool = False) -> None:
     """Lines where robots left and where the lead passed on, and red shade while a fault was in force."""
-    for span in material.faults:
+    for span in report.faults:
         axes.axvspan(span.start_s, span.end_s, color="#F3E3E3", linewidth=0, zorder=0)
-    turns = [(one.at_s, f"{one.robot} gone", BAD) for one in material.gone]
+    turns = [(one.at_s, f"{one.robot} gone", BAD) for one in report.gone]
     turns += [
         (after.at_s, f"{after.leader} leads", INK)
-        for before, after in zip(material.line, material.line[1:], strict=False)
+        for before, after in zip(report.main_terms, report.main_terms[1:], strict=False)
         if before.leader != after.leader
     ]
-    room = _NAME_WIDTH * material.end_s
+    room = _NAME_WIDTH * report.end_s
     free_from = {BAD: -room, INK: -room}
     for at_s, text, colour in sorted(turns):
         dash = "--" if colour == BAD else ":"

@@ -12,6 +12,7 @@ from onehop.analysis.palette import BAD, INK
 from onehop.analysis.report.canvas import mark_turns
 from onehop.analysis.report.report_data import ReportData
 from onehop.analysis.tables import Table
+from radio_proxy.core.error_rates import thesis_ber
 from robot_agent.core.team.team_messages import Command
 
 Series = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]
@@ -20,20 +21,21 @@ Series = tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]
 ROLLING_S = 10.0
 """Width of the rolling mean [s]: five periods of Next."""
 
-BER_FLOOR = 1e-9
-"""Bit error rates below this are drawn at it: the axis is logarithmic, and most are 0."""
+BER_FLOOR = 1e-6
+"""Bit error rates below this are drawn at it: the axis is logarithmic, and a frame of 800 B with so few
+bit errors is lost once in 150 times by them."""
 
 _GRID_S = 0.5
 
 
-def follower_chart(material: ReportData) -> Figure:
+def follower_chart(report: ReportData) -> Figure:
     """Six panels over one time axis."""
     panels: tuple[tuple[str, Callable[[ReportData, int], Series], bool], ...] = (
         ("distance to\nleader [m]", leader_distance, False),
         ("throughput\n[kb/s]", throughput, True),
         ("k_rho [1/s]", k_rho, False),
         ("SNR of Next\n[dB]", snr, True),
-        ("BER of Next", bit_errors, False),
+        ("BER of Next", thesis_bit_errors, True),
         ("error to\nslot [m]", formation_error, True),
     )
     figure = Figure(figsize=(10.0, 11.0))
@@ -41,26 +43,37 @@ def follower_chart(material: ReportData) -> Figure:
     figure.subplots_adjust(left=0.085, right=0.98, top=0.945, bottom=0.04, hspace=0.12)
     for number, (axes, (name, values, rolling)) in enumerate(zip(all_axes, panels, strict=True)):
         axes.set_ylabel(name)
-        mark_turns(axes, material, named=number == 0)
-        for robot in material.robots:
-            _draw(axes, values(material, robot), material.colours[robot], rolling)
-    _draw_threshold(all_axes[1], material)
-    _scale_errors(all_axes[4])
-    all_axes[4].annotate(
-        "0 is drawn at 1e-9", (1.0, 0.0), xycoords="axes fraction", xytext=(-4, 5), ha="right",
-        textcoords="offset points", fontsize=7.5, color=INK,
-    )  # fmt: skip
+        mark_turns(axes, report, named=number == 0)
+        for robot in report.robots:
+            _draw(axes, values(report, robot), report.colours[robot], rolling)
+    _draw_threshold(all_axes[1], report)
+    _draw_modulation_errors(all_axes[4], report)
     all_axes[-1].set_xlabel("time [s]")
-    all_axes[-1].set_xlim(0.0, max(material.end_s, material.period_s))
-    _draw_legend(figure, material)
+    all_axes[-1].set_xlim(0.0, max(report.end_s, report.period_s))
+    _draw_legend(figure, report)
     return figure
 
 
-def _scale_errors(axes: Axes) -> None:
+def _draw_modulation_errors(axes: Axes, report: ReportData) -> None:
+    """Beside the thesis's bit error rate that of the modulation, and which of the two decides."""
+    for robot in report.robots:
+        times, values = modulation_bit_errors(report, robot)
+        axes.plot(times, values, color=report.colours[robot], linewidth=1.6, linestyle=":", zorder=4)
     axes.set_yscale("log")
     axes.set_ylim(BER_FLOOR / 2, 1.0)
-    axes.set_yticks([1e-9, 1e-6, 1e-3, 1.0], ["1e-9", "1e-6", "1e-3", "1"])
+    axes.set_yticks([1e-6, 1e-4, 1e-2, 1.0], ["1e-6", "1e-4", "1e-2", "1"])
     axes.minorticks_off()
+    axes.legend(
+        handles=[
+            Line2D([], [], color=INK, linewidth=1.5, label="thesis eq. 3.25: only drawn"),
+            Line2D(
+                [], [], color=INK, linewidth=1.6, linestyle=":",
+                label="the modulation's own: decides loss (drawn at 1e-6 when lower)",
+            ),
+        ],
+        loc="lower left", bbox_to_anchor=(0.0, 0.09), ncols=2, fontsize=7.5, framealpha=0.8,
+        edgecolor="none", borderpad=0.2, handlelength=2.2,
+    )  # fmt: skip
 
 
 def _draw(axes: Axes, series: Series, colour: str, rolling: bool) -> None:
@@ -89,15 +102,15 @@ def rolling_mean(
     return np.where(known, mean, np.nan)
 
 
-def _stride(material: ReportData) -> int:
+def _stride(report: ReportData) -> int:
     """Ticks between two steps of the figure."""
-    return max(1, round(_GRID_S / material.period_s))
+    return max(1, round(_GRID_S / report.period_s))
 
 
-def _following(material: ReportData, robot: int) -> Table:
+def _following(report: ReportData, robot: int) -> Table:
     """Status of a robot while it obeys another one, at the steps of the figure."""
-    own = material.tables["status"].of(robot)
-    own = own.where(own["tick"] % _stride(material) == 0)
+    own = report.tables["status"].of(robot)
+    own = own.where(own["tick"] % _stride(report) == 0)
     return own.where((own["leader"] != robot) & (own["leader"] != 0))
 
 
@@ -107,10 +120,10 @@ def _gapped(times: npt.NDArray[np.float64], values: npt.NDArray[np.float64], gap
     return np.insert(times, jumps, times[jumps] - 1e-6), np.insert(values, jumps, np.nan)
 
 
-def leader_distance(material: ReportData, robot: int) -> Series:
+def leader_distance(report: ReportData, robot: int) -> Series:
     """To the leader that the robot obeys, from ground truth [m]."""
-    own, poses = _following(material, robot), material.tables["poses"]
-    poses = poses.where(poses["tick"] % _stride(material) == 0)
+    own, poses = _following(report, robot), report.tables["poses"]
+    poses = poses.where(poses["tick"] % _stride(report) == 0)
     keys = zip(poses["tick"].tolist(), poses["robot"].tolist(), strict=True)
     place = {key: row for row, key in enumerate(keys)}
     rows = [
@@ -127,40 +140,50 @@ def leader_distance(material: ReportData, robot: int) -> Series:
     return _gapped(times, np.hypot(x[mine] - x[theirs], y[mine] - y[theirs]), 2 * _GRID_S)
 
 
-def throughput(material: ReportData, robot: int) -> Series:
+def throughput(report: ReportData, robot: int) -> Series:
     """As the robot measured it on Next [kb/s]; 0 when that Next is missing."""
-    own = _following(material, robot)
+    own = _following(report, robot)
     return _gapped(own["time_s"], own["throughput_bps"] / 1e3, 2 * _GRID_S)
 
 
-def k_rho(material: ReportData, robot: int) -> Series:
+def k_rho(report: ReportData, robot: int) -> Series:
     """Gain in force [1/s]."""
-    own = _following(material, robot)
+    own = _following(report, robot)
     return _gapped(own["time_s"], own["k_rho"], 2 * _GRID_S)
 
 
-def formation_error(material: ReportData, robot: int) -> Series:
+def formation_error(report: ReportData, robot: int) -> Series:
     """Distance to its slot, as the robot sees it [m]."""
-    own = _following(material, robot)
+    own = _following(report, robot)
     return _gapped(own["time_s"], own["error"], 2 * _GRID_S)
 
 
-def snr(material: ReportData, robot: int) -> Series:
+def snr(report: ReportData, robot: int) -> Series:
     """Of each Next that came [dB]."""
-    return _of_next(material, robot, lambda frame: frame.snr_db)
+    return _of_next(report, robot, lambda trace: trace.snr_db)
 
 
-def bit_errors(material: ReportData, robot: int) -> Series:
-    """Of each Next that came, at least BER_FLOOR."""
-    return _of_next(material, robot, lambda frame: max(frame.bit_error_rate, BER_FLOOR))
+def modulation_bit_errors(report: ReportData, robot: int) -> Series:
+    """Bit error rate of the modulation on each Next that came, at least BER_FLOOR: it decides loss."""
+    return _of_next(report, robot, lambda trace: max(trace.bit_error_rate, BER_FLOOR))
 
 
-def _of_next(material: ReportData, robot: int, value: Callable[..., float]) -> Series:
-    period = material.log.scenario.team.next_period
+def thesis_bit_errors(report: ReportData, robot: int) -> Series:
+    """The thesis's bit error rate (eq. 3.24, 3.25 read literally) of each Next that came.
+
+    At least BER_FLOOR. The bits of a packet are those of its MSDU, as in `onehop link`.
+    """
+    return _of_next(
+        report, robot, lambda trace: max(thesis_ber(trace.snr_db, 8 * trace.msdu_bytes), BER_FLOOR)
+    )
+
+
+def _of_next(report: ReportData, robot: int, value: Callable[..., float]) -> Series:
+    period = report.log.scenario.team.next_period
     chosen = [
-        (frame.arrival_s, value(frame))
-        for frame in material.frames
-        if frame.receiver == robot and frame.delivered and isinstance(frame.message, Command)
+        (trace.arrival_s, value(trace))
+        for trace in report.traces
+        if trace.receiver == robot and trace.delivered and isinstance(trace.message, Command)
     ]
     if not chosen:
         return np.empty(0), np.empty(0)
@@ -168,8 +191,8 @@ def _of_next(material: ReportData, robot: int, value: Callable[..., float]) -> S
     return _gapped(times, values, 2.5 * period)
 
 
-def _draw_threshold(axes: Axes, material: ReportData) -> None:
-    status = material.tables["status"]
+def _draw_threshold(axes: Axes, report: ReportData) -> None:
+    status = report.tables["status"]
     followers = status["leader"] != status["robot"]
     thresholds = np.unique(status["threshold_bps"][followers & (status["threshold_bps"] > 0)])
     for threshold in thresholds.tolist():
@@ -181,13 +204,13 @@ def _draw_threshold(axes: Axes, material: ReportData) -> None:
         )  # fmt: skip
 
 
-def _draw_legend(figure: Figure, material: ReportData) -> None:
+def _draw_legend(figure: Figure, report: ReportData) -> None:
     handles = []
-    for robot, colour in material.colours.items():
-        dead = material.dead.get(robot)
+    for robot, colour in report.colours.items():
+        dead = report.dead.get(robot)
         name = f"{robot} (gone at {dead.at_s:.0f} s)" if dead else f"{robot}"
         handles.append(Line2D([], [], color=colour, linewidth=2.5, label=name))
-    handles.append(Line2D([], [], color=INK, linewidth=0.6, alpha=0.4, label="as it was"))
+    handles.append(Line2D([], [], color=INK, linewidth=0.6, alpha=0.4, label="each value"))
     handles.append(Line2D([], [], color=INK, linewidth=1.5, label=f"mean over {ROLLING_S:g} s"))
     figure.legend(
         handles=handles, loc="upper left", bbox_to_anchor=(0.08, 0.998), ncols=10, frameon=False,

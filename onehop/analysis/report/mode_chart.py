@@ -34,31 +34,31 @@ _ALARM = {Mode.LOST_LEADER: ("#F4A6A0", "lost leader"), Mode.JOINING: ("#F6D776"
 """Modes without a leader have a colour of their own."""
 
 
-def mode_chart(material: ReportData) -> Figure:
+def mode_chart(report: ReportData) -> Figure:
     """The figure; one row a robot, above them leader, shape and faults."""
-    rows = len(material.robots)
-    lanes = _lanes(material.faults)
+    rows = len(report.robots)
+    lanes = _lanes(report.faults)
     top = 2 + len(lanes)
     height = 0.85 + 0.34 * (rows + top)
     figure = Figure(figsize=(10.0, height))
     axes = figure.add_axes((0.085, 0.45 / height, 0.895, 1.0 - 0.85 / height))
-    axes.set_xlim(0.0, max(material.end_s, material.period_s))
-    place = {robot: rows - 1 - number for number, robot in enumerate(material.robots)}
+    axes.set_xlim(0.0, max(report.end_s, report.period_s))
+    place = {robot: rows - 1 - number for number, robot in enumerate(report.robots)}
     seen: set[str] = set()
-    for robot in material.robots:
-        _draw_modes(axes, material, robot, place[robot], seen)
-    _draw_reigns(axes, material, rows)
+    for robot in report.robots:
+        _draw_modes(axes, report, robot, place[robot], seen)
+    _draw_leaders(axes, report, rows)
     for lane, content in enumerate(lanes):
         for span in content:
             _draw_band(axes, span, rows + 2 + lane, "#F3D6D6", BAD)
-    for one in material.gone:
+    for one in report.gone:
         axes.plot(one.at_s, place[one.robot], marker="X", color=BAD, markersize=9, zorder=5)
         axes.annotate(
             one.why, (one.at_s, place[one.robot]), textcoords="offset points", xytext=(8, -3),
             fontsize=8, color=BAD, zorder=6,
         )  # fmt: skip
-    _label(axes, material, rows, top)
-    _explain_looks(figure, material, seen)
+    _label(axes, report, rows, top)
+    _explain_looks(figure, report, seen)
     return figure
 
 
@@ -75,12 +75,12 @@ def _lanes(faults: list[Span]) -> list[list[Span]]:
     return lanes
 
 
-def _draw_modes(axes: Axes, material: ReportData, robot: int, row: int, seen: set[str]) -> None:
-    own = material.tables["status"].of(robot)
-    colour = material.colours[robot]
+def _draw_modes(axes: Axes, report: ReportData, robot: int, row: int, seen: set[str]) -> None:
+    own = report.tables["status"].of(robot)
+    colour = report.colours[robot]
     by_mode: dict[str, list[tuple[float, float]]] = {}
-    for span in spans(own["time_s"], own["mode"], 1.5 * material.period_s, SHORTEST_S):
-        length = span.end_s - span.start_s + material.period_s
+    for span in spans(own["time_s"], own["mode"], 1.5 * report.period_s, SHORTEST_S):
+        length = span.end_s - span.start_s + report.period_s
         by_mode.setdefault(span.what, []).append((span.start_s, length))
     for mode, ranges in sorted(by_mode.items()):
         seen.add(mode)
@@ -98,13 +98,13 @@ def _look(mode: str, colour: str) -> tuple[tuple[float, float, float, float], st
     return to_rgba(colour, opacity), hatch
 
 
-def _draw_reigns(axes: Axes, material: ReportData, rows: int) -> None:
-    reigns = material.line
-    ends = [*(reign.at_s for reign in reigns[1:]), material.end_s] if reigns else []
-    times = np.array([reign.at_s for reign in reigns])
+def _draw_leaders(axes: Axes, report: ReportData, rows: int) -> None:
+    terms = report.main_terms
+    ends = [*(term.at_s for term in terms[1:]), report.end_s] if terms else []
+    times = np.array([term.at_s for term in terms])
     for names, row in (
-        ([f"{reign.leader}" for reign in reigns], rows),
-        ([str(reign.shape) for reign in reigns], rows + 1),
+        ([f"{term.leader}" for term in terms], rows),
+        ([str(term.shape) for term in terms], rows + 1),
     ):
         merged: list[Span] = []
         for start_s, end_s, name in zip(times.tolist(), ends, names, strict=True):
@@ -114,7 +114,7 @@ def _draw_reigns(axes: Axes, material: ReportData, rows: int) -> None:
                 merged.append(Span(start_s, end_s, name))
         for span in merged:
             leading = row == rows
-            face = material.colours[int(span.what)] if leading else "#E9E6DF"
+            face = report.colours[int(span.what)] if leading else "#E9E6DF"
             _draw_band(axes, span, row, face, "white" if leading else INK)
 
 
@@ -132,15 +132,15 @@ def _draw_band(axes: Axes, span: Span, row: float, face: str, ink: str) -> None:
     )  # fmt: skip
 
 
-def _label(axes: Axes, material: ReportData, rows: int, top: int) -> None:
-    names = [f"robot {robot}" for robot in reversed(material.robots)]
+def _label(axes: Axes, report: ReportData, rows: int, top: int) -> None:
+    names = [f"robot {robot}" for robot in reversed(report.robots)]
     names += ["leader", "shape", *["faults"] * (top - 2)]
     axes.set_yticks(range(rows + top), names)
-    for robot, text in zip(reversed(material.robots), axes.get_yticklabels(), strict=False):
-        text.set_color(material.colours[robot])
+    for robot, text in zip(reversed(report.robots), axes.get_yticklabels(), strict=False):
+        text.set_color(report.colours[robot])
         text.set_fontweight("bold")
-        if robot in material.dead:
-            row = rows - 1 - material.robots.index(robot)
+        if robot in report.dead:
+            row = rows - 1 - report.robots.index(robot)
             axes.annotate(
                 "", (-0.070, row), (-0.006, row), xycoords=("axes fraction", "data"),
                 arrowprops={"arrowstyle": "-", "color": BAD, "linewidth": 1.6}, annotation_clip=False,
@@ -152,7 +152,7 @@ def _label(axes: Axes, material: ReportData, rows: int, top: int) -> None:
     axes.tick_params(axis="y", length=0)
 
 
-def _explain_looks(figure: Figure, material: ReportData, seen: set[str]) -> None:
+def _explain_looks(figure: Figure, report: ReportData, seen: set[str]) -> None:
     colour = "#777777"
     handles = []
     for mode, (_, _, name) in _LOOKS.items():
@@ -164,7 +164,7 @@ def _explain_looks(figure: Figure, material: ReportData, seen: set[str]) -> None
     handles += [
         Patch(facecolor=face, label=name) for mode, (face, name) in _ALARM.items() if mode in seen
     ]
-    if material.gone:
+    if report.gone:
         handles.append(Patch(facecolor=BAD, label="gone"))
     figure.legend(
         handles=handles, loc="upper left", bbox_to_anchor=(0.08, 1.0), ncols=12,

@@ -5,6 +5,7 @@ from collections import Counter
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from onehop.analysis.palette import FAINT, INK, OKABE_ITO
 from onehop.analysis.report.report_data import ReportData
@@ -24,42 +25,43 @@ COLOURS = {
 """Colour of each reason for which a message is lost."""
 
 
-def radio_chart(material: ReportData) -> Figure:
-    """Two panels: losses by reason and receiver; bytes on the air over time by kind."""
+def radio_chart(report: ReportData) -> Figure:
+    """Two panels: losses by delivery status and receiver; bytes offered over time by kind."""
     figure = Figure(figsize=(10.0, 3.1))
     left, right = figure.subplots(1, 2)
     figure.subplots_adjust(left=0.07, right=0.98, top=0.86, bottom=0.15, wspace=0.22)
-    _draw_losses(left, material)
-    _draw_bytes(right, material)
+    _draw_losses(left, report)
+    _draw_bytes(right, report)
     return figure
 
 
-def losses(material: ReportData) -> dict[int, Counter[str]]:
-    """Lost messages by receiver and reason."""
-    found: dict[int, Counter[str]] = {robot: Counter() for robot in material.robots}
-    for frame in material.frames:
-        if not frame.delivered and frame.receiver in found:
-            found[frame.receiver][frame.status] += 1
+def losses(report: ReportData) -> dict[int, Counter[str]]:
+    """Lost messages by receiver and delivery status."""
+    found: dict[int, Counter[str]] = {robot: Counter() for robot in report.robots}
+    for trace in report.traces:
+        if not trace.delivered and trace.receiver in found:
+            found[trace.receiver][trace.status] += 1
     return found
 
 
-def _draw_losses(axes: Axes, material: ReportData) -> None:
-    found = losses(material)
-    names = [str(robot) for robot in material.robots]
+def _draw_losses(axes: Axes, report: ReportData) -> None:
+    found = losses(report)
+    names = [str(robot) for robot in report.robots]
     base = np.zeros(len(names))
     for status, colour in COLOURS.items():
-        counts = np.array([found[robot][status] for robot in material.robots])
+        counts = np.array([found[robot][status] for robot in report.robots])
         if counts.any():
             axes.bar(names, counts, bottom=base, color=colour, width=0.6, label=status.value)
             base += counts
-    received = Counter(frame.receiver for frame in material.frames)
-    for place, robot in enumerate(material.robots):
+    received = Counter(trace.receiver for trace in report.traces)
+    for place, robot in enumerate(report.robots):
         total = received[robot]
         axes.annotate(
             f"{base[place]:.0f} of {total}", (place, base[place]), ha="center", xytext=(0, 2),
             textcoords="offset points", fontsize=8, color=INK,
         )  # fmt: skip
     axes.set_ylim(0, max(1.0, 1.18 * base.max()))
+    axes.yaxis.set_major_locator(MaxNLocator(integer=True))
     axes.set_xlabel("receiver")
     axes.set_ylabel("messages lost")
     axes.grid(axis="x", visible=False)
@@ -77,12 +79,12 @@ def _draw_losses(axes: Axes, material: ReportData) -> None:
         axes.set_title("no message was lost", loc="left", fontsize=9)
 
 
-def _draw_bytes(axes: Axes, material: ReportData) -> None:
+def _draw_bytes(axes: Axes, report: ReportData) -> None:
     """Cumulative bytes: the team's own messages, and each kind of routing message."""
-    verdicts, control = material.tables["verdicts"], material.tables["control"]
+    verdicts, control = report.tables["verdicts"], report.tables["control"]
     first = _first_of_each(verdicts["source"], verdicts["message"])
     order = np.sort(first)
-    times = np.append(verdicts["time_s"][order], material.end_s)
+    times = np.append(verdicts["time_s"][order], report.end_s)
     total = np.cumsum(verdicts["msdu_bytes"][order]) / 1e3
     axes.step(
         times,
@@ -97,13 +99,13 @@ def _draw_bytes(axes: Axes, material: ReportData) -> None:
             own["time_s"], own["bytes"] / 1e3, color=OKABE_ITO[number % len(OKABE_ITO)],
             label=f"routing: {kind}",
         )  # fmt: skip
-    routing = material.log.scenario.radio.routing
+    routing = report.log.scenario.radio.routing
     if not len(control):
         axes.annotate(
             f"routing {routing!r} sends nothing of its own", (0.5, 0.05), xycoords="axes fraction",
             ha="center", fontsize=8, color=FAINT,
         )  # fmt: skip
-    axes.set_xlim(0.0, max(material.end_s, material.period_s))
+    axes.set_xlim(0.0, max(report.end_s, report.period_s))
     axes.set_ylim(bottom=0.0)
     axes.set_xlabel("time [s]")
     axes.set_ylabel("offered since the start [kB]")

@@ -6,7 +6,7 @@ from onehop.analysis.log import Log
 from onehop.analysis.message_traces import MessageTrace, join
 from onehop.analysis.palette import robot_colours
 from onehop.analysis.tables import Table
-from onehop.analysis.timeline import LastSeen, Span, departures, fault_spans, main_line, reigns
+from onehop.analysis.timeline import LastSeen, Span, departures, fault_spans, leadership
 from onehop.contracts.messages import LeadershipTerm
 
 _TABLES = (
@@ -19,18 +19,18 @@ _TABLES = (
 class ReportData:
     """One mission, taken apart.
 
-    reigns: every roster that was acted on; line: of those, who led most of the team. end_s: time of the
-    last tick in the log [s].
+    gone: everyone who left. terms: every leadership term. main_terms: of those, who led most of the
+    team. end_s: time of the last tick in the log [s].
     """
 
     log: Log
     tables: dict[str, Table]
     colours: dict[int, str]
     gone: list[LastSeen]
-    reigns: list[LeadershipTerm]
-    line: list[LeadershipTerm]
+    terms: list[LeadershipTerm]
+    main_terms: list[LeadershipTerm]
     faults: list[Span]
-    frames: list[MessageTrace]
+    traces: list[MessageTrace]
     period_s: float
     end_s: float
 
@@ -52,15 +52,16 @@ def gather(log: Log) -> ReportData:
     tables = log.tables(*_TABLES)
     period_s = log.period_ns / 1e9
     poses = tables["poses"]
+    led = leadership(tables["status"], tables["departures"], log.period_ns)
     return ReportData(
         log=log,
         tables=tables,
         colours=robot_colours(log.robots),
         gone=departures(poses, tables["departures"]),
-        reigns=reigns(tables["status"]),
-        line=main_line(tables["status"]),
+        terms=led.terms,
+        main_terms=led.main,
         faults=fault_spans(tables, period_s),
-        frames=list(join(tables["verdicts"], tables["transmit_requests"])),
+        traces=list(join(tables["verdicts"], tables["transmit_requests"])),
         period_s=period_s,
         end_s=float(poses["time_s"][-1]) if len(poses) else 0.0,
     )

@@ -17,7 +17,7 @@ from onehop.contracts.briefings import Briefing
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import BROADCAST, Note, Reception, Transmission
-from onehop.contracts.team import Mode
+from onehop.contracts.team import LossReason, Mode
 from onehop.contracts.units import NANOSECONDS, nanoseconds
 from robot_agent.core.team.election import ACK_MSDU_BYTES, Election
 from robot_agent.core.team.events import NextMeasured, NextMissed, TeamEvent
@@ -44,10 +44,6 @@ BEACON_MSDU_BYTES = 100
 STALE_PERIODS = 2
 """Periods after which a message that was under way means nothing any more: routing may hold one back
 for many seconds, and a restarted robot would take it for news."""
-
-UNANSWERED, NOT_IN_POSITION = "unanswered", "not in position at setup"
-"""Reasons for which a leader gives a follower up (thesis 3.3.3): commands without an answer, a slot that
-was not reached before the setup timeout."""
 
 
 class TeamProtocol:
@@ -298,9 +294,9 @@ class TeamProtocol:
         silent = part.ledger.close_period(self._team.lost_after)
         absent = self._end_setup(now_ns, part) if self.state.mode is Mode.SETUP else ()
         absent = tuple(i for i in absent if i not in silent)
-        for reason, robots in ((UNANSWERED, silent), (NOT_IN_POSITION, absent)):
+        for reason, robots in ((LossReason.UNANSWERED, silent), (LossReason.NOT_IN_POSITION, absent)):
             if robots:
-                self._outbox.note("lost_follower", robots=robots, reason=reason)
+                self._outbox.note("lost_follower", robots=robots, reason=reason.value)
         lost = tuple(sorted(silent + absent))
         if lost:
             self._election.change_roster(now_ns, part, self.state.roster.without(lost), lost)

@@ -43,11 +43,36 @@ def test_setup_ends_when_all_are_in_position_and_the_leader_waits_for_it():
 
 def test_setup_timeout_in_profile_thesis_loses_who_is_not_in_position():
     net = TeamNet(thesis(setup_timeout=25.0))
-    for _ in range(4 * 35):
-        net.paused[5] = net.tick + 1
+    stuck = net.members[5].pose
+    while net.seconds < 35.0:
+        net.members[5].pose = stuck
         net.step()
     assert net.status(3).members == (1, 2, 3, 4, 6)
     assert net.status(3).shape is Shape.WEDGE
+    assert losses(net) == [(3, (5,), "not in position at setup")]
+
+
+def losses(net):
+    return [
+        (robot, note.data["robots"], note.data["reason"])
+        for _, robot, note in net.notes
+        if note.kind == "lost_follower"
+    ]
+
+
+def test_silence_and_a_missed_slot_at_the_end_of_setup_are_two_notes_with_their_reasons():
+    """Robot 6 falls silent in its slot so that its third missed period ends with the setup."""
+    net = TeamNet(thesis(setup_timeout=25.0))
+    stuck = net.members[5].pose
+    while net.seconds < 35.0:
+        net.members[5].pose = stuck
+        if net.seconds >= 21.0 and 6 in net.members:
+            net.kill(6)
+        net.step()
+    assert losses(net) == [(3, (6,), "unanswered"), (3, (5,), "not in position at setup")]
+    first, second = (seconds for seconds, _, note in net.notes if note.kind == "lost_follower")
+    assert first == second
+    assert net.status(3).members == (1, 2, 3, 4)
 
 
 @pytest.mark.parametrize("profile", ["team", "thesis"])
@@ -322,29 +347,6 @@ def test_a_restarted_robot_begins_with_the_gain_of_a_first_one():
     gains = gains_of(net, 5, 2 * BOUND)
     assert net.agree()
     assert set(gains) == {1.0}
-
-
-def test_a_follower_that_is_given_up_is_told_of_with_the_reason():
-    silent, late = drive(), TeamNet(thesis(setup_timeout=25.0))
-    silent.kill(6)
-    silent.run(10.0)
-    for _ in range(4 * 35):
-        late.paused[5] = late.tick + 1
-        late.step()
-    assert reasons(silent) == [((6,), "unanswered")]
-    assert reasons(late) == [((5,), "unanswered")]
-
-
-def test_who_answers_but_is_not_in_its_slot_at_setup_is_given_up_for_that():
-    net = TeamNet(thesis(setup_timeout=25.0))
-    for _ in range(4 * 30):
-        net.step()
-        net.members[5].pose = Pose(90.0, 90.0, 0.0)
-    assert reasons(net) == [((5,), "not in position at setup")]
-
-
-def reasons(net):
-    return [(n.data["robots"], n.data["reason"]) for _, _, n in net.notes if n.kind == "lost_follower"]
 
 
 def test_at_the_goal_everyone_stops_in_its_slot():

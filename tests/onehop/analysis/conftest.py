@@ -47,7 +47,13 @@ def scenario() -> Scenario:
 def log_path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The log of the small mission; nobody may write to it."""
     path = tmp_path_factory.mktemp("log") / "mission.mcap"
-    bundle = Bundle(scenario(), {})
+    write_log(path, scenario())
+    return path
+
+
+def write_log(path: Path, mission: Scenario) -> None:
+    """Run a mission in one process, and flush its log once a second."""
+    bundle = Bundle(mission, {})
     writer = LogWriter(path, bundle, "inline")
 
     def write(tick: int, messages: list[tuple[str, bytes]]) -> None:
@@ -58,7 +64,6 @@ def log_path(tmp_path_factory: pytest.TempPathFactory) -> Path:
     journal = Journal(write)
     outcome = run(bundle, journal)
     writer.close(summarize(outcome, 1.0, journal.digest(), str(path)))
-    return path
 
 
 @pytest.fixture(scope="session")

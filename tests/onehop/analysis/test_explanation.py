@@ -1,4 +1,4 @@
-"""Why a robot did what it did: its words, what it heard and missed, what was wrong around it."""
+"""Why a robot did what it did: its status, what it heard and missed, what was wrong around it."""
 
 import json
 
@@ -6,29 +6,29 @@ import pytest
 
 from onehop.analysis import Log
 from onehop.analysis.explanation import explain
-from onehop.analysis.explanation_text import tell
+from onehop.analysis.explanation_text import explanation_text
 from onehop.contracts.errors import InputError
 
 from .conftest import HELD, HELD_S, KILLED_S, LEADER, SUCCESSOR
 
 
-def test_a_follower_after_the_election_tells_why_it_obeys_another(log: Log) -> None:
+def test_a_follower_after_the_election_says_why_it_obeys_another(log: Log) -> None:
     assert log.summary is not None
-    crowned_s = next(r["at_s"] for r in log.summary["leaders"] if r["leader"] == SUCCESSOR)
-    found = explain(log, 4, crowned_s + 0.3)
+    elected_s = next(r["at_s"] for r in log.summary["leaders"] if r["leader"] == SUCCESSOR)
+    found = explain(log, 4, elected_s + 0.3)
     assert found.roster.value["leader"] == SUCCESSOR
     assert found.roster.value["members"] == [1, 3, 4]
     assert {"lost_leader"} <= {event["kind"] for event in found.events}
     assert found.next_s is not None
     assert found.next_s > KILLED_S
-    assert any(f.source == SUCCESSOR and f.receiver == 4 and f.kind == "Next" for f in found.heard)
+    assert any(f.source == SUCCESSOR and f.receiver == 4 and f.kind == "Next" for f in found.traces)
 
 
 def test_silence_of_the_dead_leader_raises_k_rho(log: Log) -> None:
     found = explain(log, 4, KILLED_S + 0.5)
     assert found.status["throughput_bps"] == 0.0
     assert found.k_rho.value == log.scenario.gains.k_rho_max
-    assert "a Next is missing" in "\n".join(tell(found))
+    assert "a Next is missing" in "\n".join(explanation_text(found))
 
 
 def test_status_is_that_of_the_tick_asked_for(log: Log) -> None:
@@ -39,19 +39,19 @@ def test_status_is_that_of_the_tick_asked_for(log: Log) -> None:
     assert found.mode.value == action.status.mode.value
 
 
-def test_a_dead_robot_is_told_as_it_was_last(log: Log) -> None:
+def test_a_dead_robot_is_explained_as_it_was_last(log: Log) -> None:
     found = explain(log, LEADER, KILLED_S + 2.0)
     assert found.left is not None
     assert "killed" in found.left["why"]
     assert found.at_s < KILLED_S
-    assert "It left at" in "\n".join(tell(found))
+    assert "It left at" in "\n".join(explanation_text(found))
 
 
 def test_before_its_death_a_robot_has_not_left(log: Log) -> None:
     assert explain(log, LEADER, KILLED_S - 1.0).left is None
 
 
-def test_a_fault_in_force_is_told(log: Log) -> None:
+def test_a_fault_in_force_is_named(log: Log) -> None:
     assert explain(log, HELD, HELD_S + 0.5).faults == (
         "it is held: it stands still whatever it commands",
     )

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from onehop.analysis import Log, open_log
-from onehop.analysis.tables import TABLES
+from onehop.analysis.columns import TABLES
 from onehop.contracts.errors import InputError, LogError
 from onehop.wire.log_reader import LogFile
 
@@ -105,10 +105,25 @@ def test_the_killed_leader_departs_once(log: Log) -> None:
     assert table["time_s"][0] == pytest.approx(KILLED_S, abs=0.11)
 
 
+@pytest.mark.parametrize(
+    ("name", "column", "dtype"),
+    [
+        ("status", "leader", np.int64), ("status", "k_rho", np.float64), ("poses", "held", np.bool_),
+        ("verdicts", "attempts", np.int64), ("scans", "ranges", np.float32), ("notes", "data", object),
+    ],
+)  # fmt: skip
+def test_a_column_has_its_type_even_when_it_is_empty(
+    log: Log, name: str, column: str, dtype: type
+) -> None:
+    assert log.table(name)[column].dtype == dtype
+    assert log.table(name, end_s=-1.0)[column].dtype == dtype
+
+
 @pytest.mark.parametrize("name", sorted(TABLES))
 def test_every_table_has_its_columns_in_equal_length_even_when_empty(log: Log, name: str) -> None:
     for table in (log.table(name), log.table(name, end_s=-1.0)):
-        assert set(table) == {"tick", "time_s", *TABLES[name][2]}
+        declared = [column.name for column in TABLES[name].columns]
+        assert list(table) == ["tick", "time_s", *declared]
         assert {len(column) for column in table.values()} == {len(table)}
 
 

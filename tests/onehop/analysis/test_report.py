@@ -4,16 +4,25 @@ import re
 from html.parser import HTMLParser
 from pathlib import Path
 
+import numpy as np
 import pytest
 from PIL import Image
 
 from onehop.analysis import Log, open_log
+from onehop.analysis.report.election_rows import elections
+from onehop.analysis.report.follower_chart import (
+    BER_FLOOR,
+    follower_chart,
+    modulation_bit_errors,
+    thesis_bit_errors,
+)
 from onehop.analysis.report.narrative import narrative, summary_sentence
 from onehop.analysis.report.page import write_report
 from onehop.analysis.report.report_data import gather
-from onehop.analysis.report.sequence_chart import elections
+from robot_agent.core.team.team_messages import Command
 
 from .conftest import HELD, KILLED_S, LEADER, SUCCESSOR
+from .test_difference import altered, rewritten
 
 VOID = {"meta", "img", "br"}
 
@@ -75,15 +84,70 @@ def test_every_figure_is_there_as_png_and_svg(folder: Path, stem: str) -> None:
     assert "<svg" in (folder / f"{stem}.svg").read_text()[:1000]
 
 
-def test_the_story_tells_death_election_and_fault_in_order(log: Log) -> None:
+def test_the_narrative_has_death_election_and_fault_in_order(log: Log) -> None:
     events = narrative(gather(log))
     texts = [event.text for event in events]
     assert [event.at_s for event in events] == sorted(event.at_s for event in events)
-    death = next(n for n, text in enumerate(texts) if f"Robot {LEADER}, the leader, is gone" in text)
+    death = next(n for n, text in enumerate(texts) if f"Robot {LEADER}, the leader, leaves" in text)
     election = next(n for n, text in enumerate(texts) if f"robot {SUCCESSOR}, median of 1, 3, 4" in text)
     fault = next(n for n, text in enumerate(texts) if f"Fault: hold {HELD}" in text)
     assert fault < death < election
     assert events[death].at_s == pytest.approx(KILLED_S, abs=0.11)
+
+
+@pytest.mark.parametrize(
+    ("data", "sentence"),
+    [
+        (
+            {"robots": [1], "reason": "unanswered"},
+            "Leader 3 gives up robot 1: its commands stayed unanswered.",
+        ),
+        (
+            {"robots": [1, 4], "reason": "not in position at setup"},
+            "Leader 3 gives up robots 1, 4: not in position when setup ended.",
+        ),
+        ({"robots": [1]}, "Leader 3 gives up robot 1."),
+    ],
+)
+def test_the_narrative_has_a_sentence_for_each_cause_of_a_loss(
+    log_path: Path, tmp_path: Path, data: dict[str, object], sentence: str
+) -> None:
+    def note(tick: int, key: str, content: bytes) -> bytes:
+        lost = {"kind": "lost_follower", "data": data}
+        if (tick, key) != (100, "out/3"):
+            return content
+        return altered(content, lambda fields: fields.update(notes=[lost]))
+
+    noted = rewritten(log_path, tmp_path / "noted.mcap", note)
+    assert [event.text for event in narrative(gather(noted)) if "gives up" in event.text] == [sentence]
+
+
+def test_the_bit_error_rates_of_a_next_are_the_thesiss_and_the_modulations(log: Log) -> None:
+    """Eq. 3.24, 3.25 with the 6400 bits of 800 B; the modulation makes no error above 20 dB."""
+    report = gather(log)
+    commands = [
+        (trace.arrival_s, trace.snr_db)
+        for trace in report.traces
+        if trace.receiver == 4 and isinstance(trace.message, Command)
+    ]
+    snr_db = np.array([value for _, value in sorted(commands)])
+    expected = np.maximum(0.5 * np.exp(-(10.0 ** (snr_db / 10.0)) / 6400.0), BER_FLOOR)
+    thesis, own = thesis_bit_errors(report, 4)[1], modulation_bit_errors(report, 4)[1]
+    assert thesis[np.isfinite(thesis)] == pytest.approx(expected, rel=1e-12)
+    assert np.ptp(expected) > 0.0
+    assert set(own[np.isfinite(own)].tolist()) == {BER_FLOOR}
+
+
+def test_the_panel_of_bit_error_rates_says_which_decides_loss(log: Log) -> None:
+    (panel,) = (axes for axes in follower_chart(gather(log)).axes if "BER" in axes.get_ylabel())
+    legend = panel.get_legend()
+    assert legend is not None
+    thesis, own = (text.get_text() for text in legend.get_texts())
+    assert "eq. 3.25" in thesis
+    assert "only drawn" in thesis
+    assert "decides loss" in own
+    drawn = [line for line in panel.get_lines() if len(line.get_xdata()) > 2]
+    assert any(np.nanmax(np.asarray(line.get_ydata(), dtype=float)) > 1e-3 for line in drawn)
 
 
 def test_one_sentence_says_the_outcome_and_who_led(log: Log) -> None:

@@ -10,12 +10,12 @@ from mcap.opcode import Opcode
 from onehop.analysis import Log, open_log
 from onehop.analysis.salvage import salvage
 from onehop.contracts.errors import LogError
-from onehop.wire.log_reader import LogFile, Tick
+from onehop.wire.log_reader import LogFile, LoggedTick
 from onehop.wire.log_writer import LogWriter
 from onehop.wire.selection import walk
 
 
-def ticks(path: Path) -> list[Tick]:
+def ticks(path: Path) -> list[LoggedTick]:
     return list(LogFile(path).ticks())
 
 
@@ -38,22 +38,22 @@ def test_a_log_torn_anywhere_gives_a_prefix_of_whole_ticks(
     first = head_size(log_path)
     torn, saved = tmp_path / "torn.mcap", tmp_path / "saved.mcap"
     torn.write_bytes(data[: first + int(share * (len(data) - first))])
-    told = salvage(torn, saved)
+    result = salvage(torn, saved)
     whole = ticks(log_path)
     assert not open_log(saved).torn
-    assert ticks(saved) == whole[: told.last_tick + 1]
-    assert told.damage
-    assert told.messages == sum(len(tick.messages) for tick in whole[: told.last_tick + 1])
+    assert ticks(saved) == whole[: result.last_tick + 1]
+    assert result.damage
+    assert result.messages == sum(len(tick.messages) for tick in whole[: result.last_tick + 1])
 
 
 def test_what_was_readable_is_saved_but_for_the_unfinished_tick(log_path: Path, tmp_path: Path) -> None:
     torn, saved = tmp_path / "torn.mcap", tmp_path / "saved.mcap"
     torn.write_bytes(log_path.read_bytes()[: log_path.stat().st_size * 2 // 3])
-    told = salvage(torn, saved)
+    result = salvage(torn, saved)
     readable = ticks(torn)
     assert len(ticks(saved)) in (len(readable), len(readable) - 1)
     missing = sum(len(t.messages) for t in readable) - sum(len(t.messages) for t in ticks(saved))
-    assert told.given_up == missing
+    assert result.given_up == missing
 
 
 def test_an_unfinished_tick_is_given_up_and_counted(log_path: Path, tmp_path: Path) -> None:
@@ -66,8 +66,8 @@ def test_an_unfinished_tick_is_given_up_and_counted(log_path: Path, tmp_path: Pa
     writer.flush()
     torn.write_bytes((tmp_path / "growing.mcap").read_bytes())
     writer.close(None)
-    told = salvage(torn, saved)
-    assert (told.last_tick, told.given_up) == (first.tick, len(second.messages) - 1)
+    result = salvage(torn, saved)
+    assert (result.last_tick, result.given_up) == (first.tick, len(second.messages) - 1)
     assert ticks(saved) == [first]
 
 
@@ -76,16 +76,16 @@ def test_a_damaged_log_is_saved_up_to_the_damage(log_path: Path, tmp_path: Path)
     data[len(data) // 2] ^= 0xFF
     broken, saved = tmp_path / "broken.mcap", tmp_path / "saved.mcap"
     broken.write_bytes(data)
-    told = salvage(broken, saved)
-    assert "damaged near byte" in told.damage
-    assert 0 < told.last_tick < len(ticks(log_path)) - 1
-    assert ticks(saved) == ticks(log_path)[: told.last_tick + 1]
+    result = salvage(broken, saved)
+    assert "damaged near byte" in result.damage
+    assert 0 < result.last_tick < len(ticks(log_path)) - 1
+    assert ticks(saved) == ticks(log_path)[: result.last_tick + 1]
 
 
 def test_a_sound_log_loses_nothing(log: Log, log_path: Path, tmp_path: Path) -> None:
     saved = tmp_path / "saved.mcap"
-    told = salvage(log_path, saved)
-    assert (told.damage, told.given_up, told.unread_bytes, told.ended) == ("", 0, 0, True)
+    result = salvage(log_path, saved)
+    assert (result.damage, result.given_up, result.unread_bytes, result.ended) == ("", 0, 0, True)
     assert ticks(saved) == ticks(log_path)
     assert open_log(saved).summary == log.summary
 

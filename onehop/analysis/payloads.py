@@ -1,4 +1,4 @@
-"""Wire messages for people: payloads between robots opened, scans as numbers, names of the thesis."""
+"""Wire messages for people: payloads between robots decoded, scans as numbers, names of the thesis."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -19,7 +19,7 @@ from robot_agent.core.team.team_messages import (
     decode,
 )
 
-_ORDERS = {
+_COMMANDS = {
     CommandKind.NEXT: "Next",
     CommandKind.LOST_FOLLOWER: "Lost_Follower",
     CommandKind.NARROW: "Narrow",
@@ -27,32 +27,32 @@ _ORDERS = {
 }
 
 
-def fields(data: bytes) -> Any:
+def decoded_fields(data: bytes) -> Any:
     """A wire message as maps and lists, scan and payloads included. Raises DecodeError."""
     try:
-        return _opened(msgpack.unpackb(data))
+        return _decoded(msgpack.unpackb(data))
     except (ValueError, msgpack.UnpackException) as error:
         raise DecodeError(f"not msgpack: {error}") from None
 
 
-def _opened(value: Any) -> Any:
+def _decoded(value: Any) -> Any:
     if isinstance(value, dict):
-        return {key: _opened_field(key, inner) for key, inner in value.items()}
+        return {key: _decoded_field(key, inner) for key, inner in value.items()}
     if isinstance(value, list):
-        return [_opened(inner) for inner in value]
+        return [_decoded(inner) for inner in value]
     return value
 
 
-def _opened_field(key: str, value: Any) -> Any:
+def _decoded_field(key: str, value: Any) -> Any:
     if key == "scan" and isinstance(value, bytes) and len(value) % 4 == 0:
         return np.frombuffer(value, dtype="<f4").tolist()
     if key == "payload" and isinstance(value, bytes):
-        message = opened(value)
+        message = decode_payload(value)
         return value.hex() if message is None else {"kind": kind_of(message), **_plain(message)}
-    return _opened(value)
+    return _decoded(value)
 
 
-def opened(payload: bytes) -> TeamMessage | None:
+def decode_payload(payload: bytes) -> TeamMessage | None:
     """The team message in a payload, None if it is none."""
     try:
         return decode(payload)
@@ -65,11 +65,11 @@ def kind_of(message: TeamMessage | None) -> str:
     if isinstance(message, Command):
         if message.kind is CommandKind.NEXT and message.phase is MissionPhase.SETUP:
             return "Setup"
-        return _ORDERS[message.kind]
+        return _COMMANDS[message.kind]
     return "garbled" if message is None else type(message).__name__
 
 
-def content_of(message: TeamMessage | None) -> str:
+def summary_of(message: TeamMessage | None) -> str:
     """What a team message says, in a few words."""
     if isinstance(message, Command):
         roster = message.roster

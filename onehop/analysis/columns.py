@@ -1,0 +1,198 @@
+"""The tables of a log: each column once, with its name, its place in the message and its kind.
+
+TABLES is all that there is to say about a table; reading (tables.py), the page docs/reading-logs.md and
+its test follow from it.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from operator import itemgetter
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+Column = npt.NDArray[Any]
+"""One value a row."""
+
+Part = dict[str, Any]
+"""The map in a message that one row is made from."""
+
+Parts = Callable[[dict[str, Any]], Sequence[Part]]
+"""Takes a message, gives the part of each row."""
+
+BUS_KEY = "the bus key"
+"""Place of the id of the robot whose message it is: in the key, not in the message."""
+
+
+class Kind(NamedTuple):
+    """column: makes a column of values. value: applied to each value as it is read, if anything is."""
+
+    column: Callable[[Sequence[Any]], Column]
+    value: Callable[[Any], Any] | None = None
+
+
+def _array(dtype: npt.DTypeLike) -> Callable[[Sequence[Any]], Column]:
+    return partial(np.array, dtype=dtype)
+
+
+def _objects(values: Sequence[Any]) -> Column:
+    column = np.empty(len(values), dtype=object)
+    column[:] = values
+    return column
+
+
+def _seconds(values: Sequence[int]) -> Column:
+    return np.array(values, dtype=np.int64) / 1e9
+
+
+def _seconds_if_any(values: Sequence[int]) -> Column:
+    times = np.array(values, dtype=np.int64)
+    return np.where(times >= 0, times / 1e9, np.nan)
+
+
+INTEGER = Kind(_array(np.int64))
+REAL = Kind(_array(np.float64))
+WORD = Kind(_array(np.str_))
+FLAG = Kind(_array(np.bool_))
+OBJECT = Kind(_objects)
+"""Bytes and maps as they are."""
+
+INTEGERS = Kind(_objects, tuple)
+"""Tuples of different length."""
+
+TOTAL = Kind(_array(np.int64), sum)
+"""Sum of a list of whole numbers."""
+
+SECONDS = Kind(_seconds)
+"""From ns."""
+
+SECONDS_IF_ANY = Kind(_seconds_if_any)
+"""From ns; a negative time stands for never, and is nan."""
+
+RANGES = Kind(_array(np.float32), partial(np.frombuffer, dtype="<f4"))
+"""Laser scans as a matrix, (rows, n_beams) float32 [m]."""
+
+
+class ColumnSpec(NamedTuple):
+    """place: where it is in the part of its row, e.g. "pose.x", or BUS_KEY; "" is its own name."""
+
+    name: str
+    kind: Kind
+    place: str = ""
+
+
+class TableSpec(NamedTuple):
+    """row: what a row is, for people. key: bus key of its messages; "/" at its end: of each robot."""
+
+    row: str
+    key: str
+    parts: Parts
+    columns: tuple[ColumnSpec, ...]
+
+
+def _whole(message: dict[str, Any]) -> Sequence[Part]:
+    """One row a message."""
+    return (message,)
+
+
+def _requests(truth: dict[str, Any]) -> Sequence[Part]:
+    return [
+        {"robot": request["robot"], **sent}
+        for request in truth["transmit_requests"]
+        for sent in request["outbox"]
+    ]
+
+
+def _control(record: dict[str, Any]) -> Sequence[Part]:
+    return [{"kind": kind, "bytes": size} for kind, size in sorted(record["control_bytes"].items())]
+
+
+_C = ColumnSpec
+
+TABLES: dict[str, TableSpec] = {
+    "poses": TableSpec(
+        "a robot at a tick, ground truth", "truth", itemgetter("present"),
+        (
+            _C("robot", INTEGER), _C("incarnation", INTEGER),
+            _C("x", REAL, "pose.x"), _C("y", REAL, "pose.y"), _C("heading", REAL, "pose.heading"),
+            _C("v", REAL, "twist.v"), _C("w", REAL, "twist.w"), _C("held", FLAG),
+        ),
+    ),
+    "status": TableSpec(
+        "what a robot says of itself", "out/", _whole,
+        (
+            _C("robot", INTEGER, BUS_KEY), _C("incarnation", INTEGER), _C("mode", WORD, "status.mode"),
+            _C("epoch", INTEGER, "status.epoch"), _C("leader", INTEGER, "status.leader"),
+            _C("members", INTEGERS, "status.members"), _C("shape", WORD, "status.shape"),
+            _C("throughput_bps", REAL, "status.throughput_bps"),
+            _C("threshold_bps", REAL, "status.threshold_bps"),
+            _C("k_rho", REAL, "status.k_rho"), _C("error", REAL, "status.error"),
+            _C("target_x", REAL, "status.target_x"), _C("target_y", REAL, "status.target_y"),
+            _C("v", REAL, "twist.v"), _C("w", REAL, "twist.w"), _C("remaining_distance", REAL),
+        ),
+    ),
+    "notes": TableSpec(
+        "an event that a robot notes", "out/", itemgetter("notes"),
+        (_C("robot", INTEGER, BUS_KEY), _C("kind", WORD), _C("data", OBJECT)),
+    ),
+    "verdicts": TableSpec(
+        "what became of a message", "radio", itemgetter("verdicts"),
+        (
+            _C("source", INTEGER), _C("message", INTEGER), _C("destination", INTEGER),
+            _C("receiver", INTEGER), _C("status", WORD), _C("msdu_bytes", INTEGER),
+            _C("path", INTEGERS), _C("attempts", TOTAL), _C("offered_s", SECONDS, "offered_ns"),
+            _C("service_start_s", SECONDS, "service_start_ns"),
+            _C("arrival_s", SECONDS_IF_ANY, "arrival_ns"),
+            _C("discovery_s", SECONDS, "discovery_ns"), _C("queueing_s", SECONDS, "queueing_ns"),
+            _C("snr_db", REAL), _C("bit_error_rate", REAL),
+        ),
+    ),
+    "receptions": TableSpec(
+        "a message that arrived", "rx/", itemgetter("receptions"),
+        (
+            _C("robot", INTEGER, BUS_KEY), _C("source", INTEGER),
+            _C("service_start_s", SECONDS, "service_start_ns"), _C("arrival_s", SECONDS, "arrival_ns"),
+            _C("hops", INTEGER), _C("attempts", INTEGER), _C("snr_db", REAL),
+            _C("bit_error_rate", REAL), _C("msdu_bytes", INTEGER), _C("payload", OBJECT),
+        ),
+    ),
+    "transmit_requests": TableSpec(
+        "a message handed to the radio", "truth", _requests,
+        (
+            _C("robot", INTEGER), _C("destination", INTEGER), _C("msdu_bytes", INTEGER),
+            _C("payload", OBJECT),
+        ),
+    ),
+    "control": TableSpec(
+        "what routing cost since the start", "radio", _control,
+        (_C("kind", WORD), _C("bytes", INTEGER)),
+    ),
+    "contacts": TableSpec(
+        "a collision", "truth", itemgetter("contacts"),
+        (_C("robot", INTEGER), _C("other", INTEGER), _C("x", REAL), _C("y", REAL)),
+    ),
+    "departures": TableSpec(
+        "a robot that left", "truth", itemgetter("departures"), (_C("robot", INTEGER), _C("why", WORD)),
+    ),
+    "cuts": TableSpec(
+        "a cut in force", "truth", itemgetter("cuts"), (_C("side_a", INTEGERS), _C("side_b", INTEGERS)),
+    ),
+    "jams": TableSpec(
+        "a jam in force", "truth", itemgetter("jams"),
+        (_C("x", REAL), _C("y", REAL), _C("radius", REAL), _C("noise_dbm", REAL)),
+    ),
+    "scans": TableSpec(
+        "a laser scan (`ranges` is a matrix)", "obs/", _whole,
+        (_C("robot", INTEGER, BUS_KEY), _C("ranges", RANGES, "scan")),
+    ),
+}  # fmt: skip
+
+
+def markdown() -> str:
+    """The tables and their columns as docs/reading-logs.md shows them."""
+    rows = [
+        f"| `{name}` | {table.row} | `{' '.join(column.name for column in table.columns)}` |"
+        for name, table in TABLES.items()
+    ]
+    return "\n".join(["| table | a row is | columns |", "|---|---|---|", *rows])
