@@ -101,20 +101,17 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
     status, poses = tables["status"], ground["poses"].of(robot)
     if at_s < 0 or not len(status):
         raise InputError(f"--at {at_s:g}", "the robot has not acted by then", "a later time [s]")
-    tick = int(status["tick"][-1])
+    tick, last_s = int(status["tick"][-1]), float(status["time_s"][-1])
     here = poses.where(poses["tick"] <= tick)
     left = _left(ground, robot, tick)
-    if left is None and at_s > float(status["time_s"][-1]) + 2 * log.period_ns / 1e9:
-        raise InputError(
-            f"--at {at_s:g}", "the log ends before that", f"at most {status['time_s'][-1]:g} s"
-        )
+    if left is None and at_s > last_s + 2 * log.period_ns / 1e9:
+        raise InputError(f"--at {at_s:g}", "the log ends before that", f"at most {last_s:g} s")
     own = [
         trace
         for trace in join(ground["verdicts"], ground["transmit_requests"])
-        if _concerns(trace, robot)
+        if robot in (trace.receiver, trace.source)
     ]
     changes = [data for kind, data in _notes(tables["notes"]) if kind == "mode"]
-    last_s = float(status["time_s"][-1])
     return Explanation(
         robot=robot,
         asked_s=at_s,
@@ -134,10 +131,6 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         gains=log.scenario.gains,
         team=log.scenario.team,
     )
-
-
-def _concerns(trace: MessageTrace, robot: int) -> bool:
-    return robot in (trace.receiver, trace.source)
 
 
 def _left(ground: dict[str, Table], robot: int, tick: int) -> dict[str, Any] | None:
