@@ -98,23 +98,19 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         )
     tables = log.tables("status", "notes", robots=[robot], end_s=at_s)
     ground = log.tables("poses", "departures", "verdicts", "transmit_requests", end_s=at_s)
-    status, poses = tables["status"], ground["poses"].of(robot)
+    status = tables["status"]
     if at_s < 0 or not len(status):
         raise InputError(f"--at {at_s:g}", "the robot has not acted by then", "a later time [s]")
-    tick = int(status["tick"][-1])
-    here = poses.where(poses["tick"] <= tick)
+    tick, last_s = int(status["tick"][-1]), float(status["time_s"][-1])
     left = _left(ground, robot, tick)
-    if left is None and at_s > float(status["time_s"][-1]) + 2 * log.period_ns / 1e9:
-        raise InputError(
-            f"--at {at_s:g}", "the log ends before that", f"at most {status['time_s'][-1]:g} s"
-        )
+    if left is None and at_s > last_s + 2 * log.period_ns / 1e9:
+        raise InputError(f"--at {at_s:g}", "the log ends before that", f"at most {last_s:g} s")
     own = [
         trace
         for trace in join(ground["verdicts"], ground["transmit_requests"])
-        if _concerns(trace, robot)
+        if robot in (trace.receiver, trace.source)
     ]
     changes = [data for kind, data in _notes(tables["notes"]) if kind == "mode"]
-    last_s = float(status["time_s"][-1])
     return Explanation(
         robot=robot,
         asked_s=at_s,
@@ -126,7 +122,7 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         roster=_roster_since(status),
         k_rho=_since(status, "k_rho"),
         status=_row(status),
-        pose=_row(here),
+        pose=_row(_until(ground["poses"].of(robot), tick)),
         next_s=_last_command(own, robot, int(status["leader"][-1])),
         traces=tuple(trace for trace in own if trace.settled_s > last_s - window_s),
         events=_events(tables["notes"], last_s - window_s),
@@ -136,8 +132,8 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
     )
 
 
-def _concerns(trace: MessageTrace, robot: int) -> bool:
-    return robot in (trace.receiver, trace.source)
+def _until(table: Table, tick: int) -> Table:
+    return table.where(table["tick"] <= tick)
 
 
 def _left(ground: dict[str, Table], robot: int, tick: int) -> dict[str, Any] | None:

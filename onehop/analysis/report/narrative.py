@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from typing import Any, NamedTuple
 
+from onehop.analysis.report.election_rows import elections
 from onehop.analysis.report.report_data import ReportData
 from onehop.contracts.messages import LeadershipTerm
 from onehop.contracts.team import loss_in_words
@@ -27,6 +28,7 @@ def narrative(report: ReportData) -> list[NarrativeEvent]:
         *_notes(report),
         *_columns(report),
         *_losses_of_leaders(report),
+        *_handovers(report),
         *_departures(report),
         *(
             NarrativeEvent(span.start_s, 2, _fault(span.what, span.end_s - span.start_s))
@@ -175,6 +177,23 @@ def _lost_leader(report: ReportData, at_s: float, leader: int, robots: list[int]
 def _successor(terms: list[LeadershipTerm], at_s: float, leader: int) -> LeadershipTerm | None:
     later = (t for t in terms if at_s - 1e-6 <= t.at_s <= at_s + 1.0 and t.leader != leader)
     return next(later, None)
+
+
+def _handovers(report: ReportData) -> Iterator[NarrativeEvent]:
+    """Changes of the leader without a loss of the old one: a new roster has another median."""
+    lost = [
+        (at_s, data["leader"])
+        for at_s, kind, data in report.tables["notes"].rows("time_s", "kind", "data")
+        if kind == "lost_leader"
+    ]
+    for before, after in elections(report):
+        if any(who == before.leader and 0.0 <= after.at_s - at_s <= 1.0 for at_s, who in lost):
+            continue
+        yield NarrativeEvent(
+            after.at_s, 2,
+            f"Robot {after.leader}, median of {_ids(after.members)}, leads from now on; "
+            f"shape: {after.shape}.",
+        )  # fmt: skip
 
 
 def _departures(report: ReportData) -> Iterator[NarrativeEvent]:

@@ -1,6 +1,7 @@
 """The report: a page that opens alone and says what happened."""
 
 import re
+from dataclasses import replace
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -148,6 +149,16 @@ def test_the_panel_of_bit_error_rates_says_which_decides_loss(log: Log) -> None:
     assert "decides loss" in own
     drawn = [line for line in panel.get_lines() if len(line.get_xdata()) > 2]
     assert any(np.nanmax(np.asarray(line.get_ydata(), dtype=float)) > 1e-3 for line in drawn)
+
+
+def test_a_leader_that_hands_over_to_the_median_of_a_new_roster_is_named(log: Log) -> None:
+    """Not for an election: that sentence names the new leader already."""
+    report = gather(log)
+    assert not [event for event in narrative(report) if "leads from now on" in event.text]
+    notes = report.tables["notes"]
+    quiet = {**report.tables, "notes": notes.where(notes["kind"] != "lost_leader")}
+    texts = [event.text for event in narrative(replace(report, tables=quiet))]
+    assert f"Robot {SUCCESSOR}, median of 1, 3, 4, leads from now on; shape: wedge." in texts
 
 
 def test_one_sentence_says_the_outcome_and_who_led(log: Log) -> None:
