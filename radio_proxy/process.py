@@ -1,4 +1,4 @@
-"""The shell of the radio: hear the truth of a tick, carry what was offered, put all inboxes."""
+"""The shell of the radio: hear the truth of a tick, carry what robots want sent, put all inboxes."""
 
 from onehop.contracts import topics
 from onehop.contracts.briefings import RadioBriefing
@@ -38,5 +38,5 @@ def _serve(bus: Bus, radio: Radio) -> int:
             put(pack_tick(truth.tick, messages))
         elif what == topics.END:
             return 0
-        elif data == GONE:
-            return 1
+        elif what == topics.alive(topics.WORLD) and data == GONE:
+            return startup.WORLD_IS_GONE
