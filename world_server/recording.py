@@ -36,8 +36,9 @@ class Recording:
 
     def hand_over(self) -> None:
         """Send what has been added and not been sent."""
-        self._put_ticks(pack_ticks(self._batch))
-        self._batch.clear()
+        if self._batch:
+            self._put_ticks(pack_ticks(self._batch))
+            self._batch.clear()
 
     def _on_recorded(self, data: bytes) -> None:
         self._in_file = int.from_bytes(data, "little")

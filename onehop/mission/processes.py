@@ -144,17 +144,19 @@ class ProcessGroup:
     def _file(self, name: str) -> Path:
         return self._words / f"{name}.txt"
 
-    def end(self) -> None:
-        """Ask every child that still runs to end, then kill what does not."""
-        for send, wait_s in ((signal.SIGTERM, GRACE_S), (signal.SIGKILL, GRACE_S)):
-            running = [one.process for one in self._children.values() if one.process.poll() is None]
-            for process in running:
-                process.send_signal(send)
-            _wait(running, wait_s)
+    def end(self, leave_s: float = 0.0) -> None:
+        """Give the children some time to leave [s], ask those that still run, then kill what does not.
 
-    def await_end(self, seconds: float) -> None:
-        """Give the children time to end by themselves."""
-        _wait([one.process for one in self._children.values()], seconds)
+        A child that has been stopped can hear that it is asked only when it goes on.
+        """
+        children = [child.process for child in self._children.values()]
+        _wait(children, leave_s)
+        for signals in ((signal.SIGTERM, signal.SIGCONT), (signal.SIGKILL,)):
+            running = [process for process in children if process.poll() is None]
+            for process in running:
+                for number in signals:
+                    process.send_signal(number)
+            _wait(running, GRACE_S)
 
 
 def _wait(processes: Sequence[subprocess.Popen[bytes]], seconds: float) -> None:

@@ -46,7 +46,8 @@ CONNECT_TIMEOUT_MS = 60_000
 """How long a client waits for the router to appear."""
 
 LEASE_MS = 3000
-"""Silence after which a stopped process counts as gone (Zenoh lease); a killed one is gone at once."""
+"""Silence after which a stopped process, the world too, counts as gone; a killed one is gone at once. A
+peer goes by the lease that the silent one announced (Zenoh's default is 10 s)."""
 
 ONE_THREAD = (
     "(rx: (handover: net), acc: (handover: net), app: (handover: net), tx: (handover: net), "
@@ -217,7 +218,6 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
         "mode": "router",
         "listen/endpoints": [endpoint],
         "scouting/delay": 0,
-        **_QUIET,
         "transport/unicast/lowlatency": True,
     }
     if credentials is None:
@@ -249,9 +249,7 @@ def open_client(
         "connect/exit_on_failure": True,
         "connect/retry": {"period_init_ms": 20, "period_max_ms": 200, "period_increase_factor": 1.5},
         "listen/endpoints": [],
-        **_QUIET,
         "transport/unicast/lowlatency": name.startswith(topics.robot_name("")),
-        "transport/link/tx/lease": LEASE_MS,
     }
     if password is not None:
         settings["transport/auth/usrpwd"] = {"user": name, "password": password}
@@ -261,7 +259,7 @@ def open_client(
 def _open(settings: Mapping[str, Any]) -> zenoh.Session:
     os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
     config = zenoh.Config()
-    for key, value in settings.items():
+    for key, value in {**_QUIET, "transport/link/tx/lease": LEASE_MS, **settings}.items():
         config.insert_json5(key, json.dumps(value))
     try:
         return zenoh.open(config)
