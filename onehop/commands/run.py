@@ -114,7 +114,7 @@ def _run_inline(
 
 def _add_view(path: Path) -> None:
     """Put the viewer layer into a sound log; a torn one is left as it is."""
-    if not path.exists():
+    if not path.is_file():
         return
     from onehop.analysis.log import open_log
     from onehop.analysis.view.layer import write_view
@@ -127,7 +127,7 @@ def _add_view(path: Path) -> None:
 def _draw(folder: Path, record: bool) -> Path | None:
     """The figure of the mission, if there is a log to draw it from."""
     path = folder / "mission.mcap"
-    if not record or not path.exists():
+    if not record or not path.is_file():
         return None
     from onehop.analysis.trajectory import draw_trajectory
     from onehop.wire.log_reader import LogFile

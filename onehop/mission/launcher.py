@@ -25,7 +25,7 @@ CONNECT_S = 60.0
 """How long the world may take to open the bus [s]."""
 
 LEAVE_S = 2.0
-"""How long the children may take to leave by themselves when the mission is over [s]."""
+"""How long the children may take to leave by themselves after a mission that was not broken off [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +87,7 @@ def _run_once(
         return ending_by_death(group, bus.name, 0)
     with bus:
         ending = OperatorSession(group, bus, show, tell).until_end()
-        group.end(LEAVE_S if ending.digest is not None else 0.0)  # closing waits for a stopped router
+        group.end(0.0 if ending.outcome.outcome == "aborted" else LEAVE_S)  # while the router can answer
     if group.said_something:
         tell(f"what the processes said on stderr is in {plan.out / 'stderr'}")
     return ending

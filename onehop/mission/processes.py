@@ -147,16 +147,17 @@ class ProcessGroup:
     def end(self, leave_s: float = 0.0) -> None:
         """Give the children some time to leave [s], ask those that still run, then kill what does not.
 
-        A child that has been stopped can hear that it is asked only when it goes on.
+        First of all those that have been stopped go on: only then they can hear anything.
         """
-        children = [child.process for child in self._children.values()]
-        _wait(children, leave_s)
-        for signals in ((signal.SIGTERM, signal.SIGCONT), (signal.SIGKILL,)):
-            running = [process for process in children if process.poll() is None]
+        for number, wait_s in (
+            (signal.SIGCONT, leave_s),
+            (signal.SIGTERM, GRACE_S),
+            (signal.SIGKILL, GRACE_S),
+        ):
+            running = [one.process for one in self._children.values() if one.process.poll() is None]
             for process in running:
-                for number in signals:
-                    process.send_signal(number)
-            _wait(running, GRACE_S)
+                process.send_signal(number)
+            _wait(running, wait_s)
 
 
 def _wait(processes: Sequence[subprocess.Popen[bytes]], seconds: float) -> None:

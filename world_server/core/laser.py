@@ -148,7 +148,8 @@ def _look_at_disc(
 @numba.njit(cache=True, error_model="numpy")
 def _scan_all(
     poses: FloatArray, looking: IntArray, radius: float, limit: float, half: float,
-    directions: FloatArray, frame: FloatArray, columns: int, rows: int, first: IntArray, segments: FloatArray, scans: Scans,
+    directions: FloatArray, frame: FloatArray, columns: int, rows: int, first: IntArray,
+    segments: FloatArray, scans: Scans,
 ) -> None:  # fmt: skip
     """Scan from the poses, (n, 3), numbered in `looking` into rows of scans; the others are seen."""
     beams = directions.shape[1]
