@@ -22,6 +22,7 @@ CREDENTIALS_VARIABLE = "ONEHOP_CREDENTIALS"
 """Environment variable of the world: all names and passwords, as name:password words."""
 
 BRIEFING_TIMEOUT_S = 30.0
+"""How long the world may take to answer the question for a briefing [s]."""
 
 WORLD_IS_GONE = 3
 """Exit status of a process that ends because the world has gone."""
