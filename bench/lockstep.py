@@ -79,8 +79,8 @@ def mission(robots: int, limit: float, folder: Path) -> float:
     settings = [f"team.size={robots}", f"clock.limit_s={limit}"]
     bundle = scenario_file.load(SCENARIO, settings)
     arguments = launcher.world_arguments(SCENARIO, settings, None, None, None, None)
-    order = launcher.Order(arguments, bundle.scenario.team.robots, folder, True)
-    return float(launcher.run(order, lambda _: None)["ticks_per_s"])
+    plan = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, True)
+    return float(launcher.run(plan, lambda _: None)["ticks_per_s"])
 
 
 def main() -> None:

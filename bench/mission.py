@@ -43,8 +43,8 @@ def one_process(bundle: Bundle, folder: Path, record: bool) -> float:
 def processes(scenario: Path, settings: list[str], bundle: Bundle, folder: Path, record: bool) -> float:
     """Ticks a second of the lock-step driver, from the first tick to the last."""
     arguments = launcher.world_arguments(scenario, settings, None, None, None, None)
-    order = launcher.Order(arguments, bundle.scenario.team.robots, folder, record)
-    return float(launcher.run(order, lambda _: None)["ticks_per_s"])
+    plan = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, record)
+    return float(launcher.run(plan, lambda _: None)["ticks_per_s"])
 
 
 def ir_sim(bundle: Bundle, folder: Path) -> float | None:

@@ -68,7 +68,6 @@ def _help(context: typer.Context) -> None:
 def run(
     scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
     driver: Annotated[Driver, Option(help="One process each, or all in one.")] = Driver.PROCESSES,
-    clock: Annotated[str | None, Option(help="lockstep: everyone waits for its inputs.")] = None,
     seed: Annotated[int | None, Option(help="Seed of everything random.")] = None,
     map_file: Annotated[
         Path | None, Option("--map", help="Another map: .toml, ROS .yaml or MovingAI .map.")
@@ -89,8 +88,6 @@ def run(
     """
     from onehop.commands import run as command
 
-    if clock is not None:
-        settings = [*settings, f"clock.mode={clock}"]
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
     _leave(command.run(scenario, driver.value, settings, seed, *places, *wanted))

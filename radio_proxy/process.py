@@ -38,5 +38,5 @@ def _serve(bus: Bus, radio: Radio) -> int:
             put(pack_tick(truth.tick, messages))
         elif what == topics.END:
             return 0
-        elif data == GONE:
-            return 1
+        elif what == topics.alive(topics.WORLD) and data == GONE:
+            return startup.WORLD_IS_GONE

@@ -39,5 +39,5 @@ def _serve(bus: Bus, robot: Robot, name: str) -> int:
             os.kill(os.getpid(), signal.SIGKILL)
         elif what == topics.END:
             return 0
-        elif data == GONE:
-            return 1
+        elif what == topics.alive(topics.WORLD) and data == GONE:
+            return startup.WORLD_IS_GONE

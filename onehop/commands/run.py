@@ -1,6 +1,5 @@
 """`onehop run`: a mission from its scenario to its outcome, with a log, a summary and a figure."""
 
-import json
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -11,7 +10,7 @@ from onehop.contracts.messages import Action, Progress, RobotProgress
 from onehop.mission.progress import Display
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
-from onehop.wire.summary import summarize
+from onehop.wire.summary import summarize, summary_file, write_summary
 
 SHOW_S = 0.2
 """Wall-clock time between two updates of the progress display."""
@@ -49,8 +48,8 @@ def run(
             from onehop.mission import launcher
 
             arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
-            order = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, record)
-            summary = launcher.run(order, display.show)
+            plan = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, record)
+            summary = launcher.run(plan, display.show, display.tell)
     figure = _draw(folder, record)
     if with_view:
         _add_view(folder / "mission.mcap")
@@ -109,13 +108,13 @@ def _run_inline(
     summary = summarize(outcome, wall_s, journal.digest(), str(path) if record else None)
     if log is not None:
         log.close(summary)
-    (folder / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
+    write_summary(folder, summary)
     return summary
 
 
 def _add_view(path: Path) -> None:
     """Put the viewer layer into a sound log; a torn one is left as it is."""
-    if not path.exists():
+    if not path.is_file():
         return
     from onehop.analysis.log import open_log
     from onehop.analysis.view.layer import write_view
@@ -128,7 +127,7 @@ def _add_view(path: Path) -> None:
 def _draw(folder: Path, record: bool) -> Path | None:
     """The figure of the mission, if there is a log to draw it from."""
     path = folder / "mission.mcap"
-    if not record or not path.exists():
+    if not record or not path.is_file():
         return None
     from onehop.analysis.trajectory import draw_trajectory
     from onehop.wire.log_reader import LogFile
@@ -141,23 +140,23 @@ def _draw(folder: Path, record: bool) -> Path | None:
 def _print(summary: dict[str, Any], folder: Path, figure: Path | None) -> None:
     console = stdout()
     lost = {entry["robot"]: entry for entry in summary["lost"]}
-    fates = table("Robots", "robot", "outcome", "at", "why")
+    robots = table("Robots", "robot", "outcome", "at", "why")
     for robot in sorted({*summary["arrived"], *lost}):
         if robot in lost:
             entry = lost[robot]
-            fates.add_row(str(robot), "lost", f"{entry['at_s']:.1f} s", entry["why"])
+            robots.add_row(str(robot), "lost", f"{entry['at_s']:.1f} s", entry["why"])
         else:
-            fates.add_row(str(robot), "arrived", "", "")
-    reigns = table("Leaders", "from", "leader", "epoch", "shape", "members")
-    for reign in summary["leaders"]:
-        members = " ".join(map(str, reign["members"]))
-        reigns.add_row(
-            f"{reign['at_s']:.1f} s", str(reign["leader"]), str(reign["epoch"]), reign["shape"], members
+            robots.add_row(str(robot), "arrived", "", "")
+    terms = table("Leaders", "from", "leader", "epoch", "shape", "members")
+    for term in summary["leaders"]:
+        members = " ".join(map(str, term["members"]))
+        terms.add_row(
+            f"{term['at_s']:.1f} s", str(term["leader"]), str(term["epoch"]), term["shape"], members
         )
-    if fates.row_count:
-        console.print(fates)
-    if reigns.row_count:
-        console.print(reigns)
+    if robots.row_count:
+        console.print(robots)
+    if terms.row_count:
+        console.print(terms)
     console.print(f"outcome     {summary['outcome']}: {summary['reason']}")
     console.print(
         f"simulated   {summary['sim_s']:.1f} s in {summary['wall_s']:.1f} s: {summary['ticks']} ticks, "
@@ -168,6 +167,6 @@ def _print(summary: dict[str, Any], folder: Path, figure: Path | None) -> None:
     console.print(f"log         {summary['log'] or 'none'}")
     if figure is not None:
         console.print(f"figure      {figure}")
-    console.print(f"summary     {folder / 'summary.json'}")
+    console.print(f"summary     {summary_file(folder)}")
     if summary["outcome"] == "aborted":
         say(f"onehop run: aborted: {summary['reason']}")

@@ -298,6 +298,17 @@ class End(Wire, frozen=True):
     wall_s: float
 
 
+class Death(Wire, frozen=True):
+    """Operator to world (key died): a process has ended that was not asked to.
+
+    incarnation: how often it had been started again. account: how it ended, and its last words.
+    """
+
+    name: str
+    incarnation: int
+    account: str
+
+
 class RobotProgress(Value, frozen=True):
     """One line of the progress display; speed [m/s]."""
 

@@ -194,13 +194,12 @@ class PlannerSection:
 
 @dataclass(frozen=True, slots=True)
 class ClockSection:
-    """mode: lockstep, everyone waits for its inputs of a tick. period_ms: length of a tick.
+    """period_ms: length of a tick, in which everyone waits for its inputs and for nothing else.
 
     limit_s: simulated time after which a mission has failed.
     silence_s: wall-clock time after which a process that says nothing is given up [s].
     """
 
-    mode: Literal["lockstep"] = "lockstep"
     period_ms: Annotated[int, Range(1, 1000)] = 50
     limit_s: Annotated[float, Range(0.001, 1e6)] = 900.0
     silence_s: Annotated[float, Range(0.1, 3600.0)] = 10.0

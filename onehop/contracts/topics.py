@@ -5,13 +5,12 @@ speaks under `from/<name>`; the world hears all that is said there. Bus keys lie
 prefix, so that missions on one machine never hear each other.
 """
 
-ROBOT_NAME = "robot-{}"
 WORLD, RADIO, RECORDER, OPERATOR = "world", "radio", "recorder", "operator"
 
 
 def robot_name(robot: int | str) -> str:
     """Name of a robot's process, liveliness token and identity: robot-3."""
-    return ROBOT_NAME.format(robot)
+    return f"robot-{robot}"
 
 
 def to(name: str, what: str) -> str:
@@ -42,7 +41,7 @@ CARRIED = "carried"
 """Radio to world: the inboxes of tick k of every present robot, and the record of the tick."""
 
 TICKS = "ticks"
-"""World to recorder: all wire messages of one tick."""
+"""World to recorder: all wire messages of a few ticks."""
 
 RECORDED = "recorded"
 """Recorder to world: the last tick that is in the file."""
@@ -56,11 +55,14 @@ PROGRESS = "progress"
 CONTROL = "control"
 """Operator to world: end the mission now."""
 
+DIED = "died"
+"""Operator to world: a process has ended that was not asked to, and how."""
+
 RESTART = "restart"
 """World to operator: start the process of this robot again."""
 
-RESULT = "result"
-"""Recorder to operator: summary of the finished log."""
+DIGEST = "digest"
+"""Recorder to operator: the digest of the finished log."""
 
 PULSE = "pulse"
 """What a process tells itself to look at the clock."""
@@ -77,10 +79,10 @@ def config(name: str) -> str:
 
 
 TRUTH = "truth"
-"""World to radio, and log channel: ground truth of tick k, and what was offered to the air."""
+"""World to radio, and log channel: ground truth of tick k, and what robots handed to their NICs."""
 
 RADIO_RECORD = "radio"
-"""Log channel of the radio's verdicts; on the bus they travel in air."""
+"""Log channel of the radio's verdicts; on the bus they travel in `carried`."""
 
 
 def obs(robot: int | str) -> str:
@@ -89,7 +91,7 @@ def obs(robot: int | str) -> str:
 
 
 def rx(robot: int | str) -> str:
-    """Log channel of a robot's inbox of tick k; on the bus it travels in air and in its percept."""
+    """Log channel of a robot's inbox of tick k; on the bus it travels in `carried` and its percept."""
     return f"rx/{robot}"
 
 

@@ -38,12 +38,12 @@ def run(bundle: Bundle, journal: Journal | None, watch: Watcher | None = None) -
             actions[presence.robot] = robots[me].step(percept(observation, inbox))
         world.advance(actions)
         if journal is not None:
-            record: list[WireMessage] = [(topics.TRUTH, encode(truth))]
-            record.append((topics.RADIO_RECORD, encode(carried.record)))
-            record += [(topics.rx(i), encode(inbox)) for i, inbox in carried.inboxes.items()]
-            record += [(topics.obs(i), encode(seen)) for i, seen in observations.items()]
-            record += [(topics.out(i), encode(action)) for i, action in actions.items()]
-            journal.add(truth.tick, record)
+            messages: list[WireMessage] = [(topics.TRUTH, encode(truth))]
+            messages.append((topics.RADIO_RECORD, encode(carried.record)))
+            messages += [(topics.rx(i), encode(inbox)) for i, inbox in carried.inboxes.items()]
+            messages += [(topics.obs(i), encode(seen)) for i, seen in observations.items()]
+            messages += [(topics.out(i), encode(action)) for i, action in actions.items()]
+            journal.add(truth.tick, messages)
         if watch is not None:
             watch(world, actions)
         outcome = world.outcome()

@@ -1,9 +1,5 @@
-"""Run one mission as processes: start them, watch them, carry out what the world asks, end them."""
+"""Run one mission as processes: start them, watch over them, end them, write the summary."""
 
-import json
-import shutil
-import signal
-import tempfile
 import time
 import uuid
 from collections.abc import Callable, Sequence
@@ -13,19 +9,23 @@ from typing import Any
 
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
-from onehop.contracts.messages import End, Outcome, Progress
+from onehop.contracts.messages import Death, Progress
+from onehop.mission.operator import Ending, OperatorSession, ending_by_death
 from onehop.mission.processes import ProcessGroup, free_endpoint
 from onehop.node.bus import Bus, open_client
-from onehop.wire.codec import decode
-from onehop.wire.summary import summarize
+from onehop.wire.summary import summarize, write_summary
 
 START_ATTEMPTS = 5
 """Tries when another program takes the free port between the search for it and its use."""
 
 CONNECT_TRY_MS = 500
-POLL_S = 0.1
-RESULT_S = 30.0
-LEAVE_S = 10.0
+"""How long one attempt to reach the world may take: between two the children are looked at."""
+
+CONNECT_S = 60.0
+"""How long the world may take to open the bus [s]."""
+
+LEAVE_S = 2.0
+"""How long the children may take to leave by themselves after a mission that was not broken off [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,143 +37,75 @@ class LaunchPlan:
     out: Path
     record: bool
 
+    @property
+    def log(self) -> str | None:
+        """Where the log will be, if there will be one."""
+        return str(self.out / "mission.mcap") if self.record else None
 
-def run(order: LaunchPlan, show: Callable[[Progress], None]) -> dict[str, Any]:
-    """Run a mission to its end and return its summary. show: called some times a second.
 
-    Raises MissionError when it cannot be started, KeyboardInterrupt after an orderly end on Ctrl-C.
+def run(
+    plan: LaunchPlan, show: Callable[[Progress], None], tell: Callable[[str], None] = lambda _: None
+) -> dict[str, Any]:
+    """Run a mission to its end, write its summary and return it.
+
+    show: takes progress, some times a second. tell: takes lines for people, when something went wrong.
+    Raises MissionError when it cannot be run, KeyboardInterrupt after an orderly end on Ctrl-C.
     """
-    folder = Path(tempfile.mkdtemp(prefix="onehop-"))
-    try:
-        for _ in range(START_ATTEMPTS):
-            mission = f"onehop-{uuid.uuid4().hex[:8]}"
-            endpoint = free_endpoint()
-            with ProcessGroup(endpoint, mission, order.robots, folder) as family:
-                summary = _run_once(order, family, mission, endpoint, show)
-                if summary is not None:
-                    return summary
-        raise MissionError(f"no free port on loopback found in {START_ATTEMPTS} attempts")
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
+    for _ in range(START_ATTEMPTS):
+        mission = f"onehop-{uuid.uuid4().hex[:8]}"
+        endpoint = free_endpoint()
+        with ProcessGroup(endpoint, mission, plan.robots, plan.out / "stderr") as group:
+            ending = _run_once(plan, group, mission, endpoint, show, tell)
+            if ending is None:
+                continue
+            summary = summarize(ending.outcome, ending.wall_s, ending.digest, plan.log, group.processes)
+            write_summary(plan.out, summary)
+            if ending.interrupted:
+                raise KeyboardInterrupt
+            return summary
+    raise MissionError(f"no free port on loopback found in {START_ATTEMPTS} attempts")
 
 
 def _run_once(
-    order: LaunchPlan,
-    family: ProcessGroup,
+    plan: LaunchPlan,
+    group: ProcessGroup,
     mission: str,
     endpoint: str,
     show: Callable[[Progress], None],
-) -> dict[str, Any] | None:
+    tell: Callable[[str], None],
+) -> Ending | None:
     """One attempt; None when the port was taken in between."""
-    family.start_world(order.world_arguments)
-    family.start_radio()
-    family.start_recorder(order.out, order.record)
-    for i in order.robots:
-        family.start_robot(i)
-    bus = _connect(family, mission, endpoint)
-    if bus is None:
-        return None
+    group.start_world(plan.world_arguments)
+    group.start_radio()
+    group.start_recorder(plan.out, plan.record)
+    for i in plan.robots:
+        group.start_robot(i)
+    bus = _connect(group, mission, endpoint)
+    if isinstance(bus, Death):
+        if "Address already in use" in bus.account:
+            return None
+        return ending_by_death(group, bus.name, 0)
     with bus:
-        return _Watch(order, family, bus, show).until_end()
+        ending = OperatorSession(group, bus, show, tell).until_end()
+        group.end(0.0 if ending.outcome.outcome == "aborted" else LEAVE_S)  # while the router can answer
+    if group.said_something:
+        tell(f"what the processes said on stderr is in {plan.out / 'stderr'}")
+    return ending
 
 
-def _connect(family: ProcessGroup, mission: str, endpoint: str) -> Bus | None:
-    """The operator's session, as soon as the world listens; None when the port was taken in between."""
-    while True:
+def _connect(group: ProcessGroup, mission: str, endpoint: str) -> Bus | Death:
+    """The operator's session as soon as the world listens, or the death of a child before that."""
+    deadline = time.monotonic() + CONNECT_S
+    while time.monotonic() < deadline:
         try:
             return open_client(
-                mission, endpoint, topics.OPERATOR, family.operator_password, CONNECT_TRY_MS
+                mission, endpoint, topics.OPERATOR, group.operator_password, CONNECT_TRY_MS
             )
         except MissionError:
-            if family.died(topics.WORLD):
-                words = family.last_words(topics.WORLD)
-                if "Address already in use" in words:
-                    return None
-                raise MissionError(words) from None
-
-
-class _Watch:
-    """The operator's seat of one running mission."""
-
-    def __init__(
-        self, order: LaunchPlan, family: ProcessGroup, bus: Bus, show: Callable[[Progress], None]
-    ) -> None:
-        self._order = order
-        self._family = family
-        self._bus = bus
-        self._show = show
-        self._tick = 0
-        self._end: End | None = None
-        self._result: dict[str, Any] | None = None
-        self._interrupted = False
-        self._control = bus.publisher(topics.by(topics.OPERATOR, topics.CONTROL))
-
-    def until_end(self) -> dict[str, Any]:
-        previous = {
-            number: signal.signal(number, self._on_signal) for number in (signal.SIGINT, signal.SIGTERM)
-        }
-        try:
-            self._watch()
-        finally:
-            for number, handler in previous.items():
-                signal.signal(number, handler)
-        self._family.await_end(LEAVE_S if self._end is not None else 0.0)
-        if self._interrupted:
-            raise KeyboardInterrupt
-        return self._summary()
-
-    def _on_signal(self, *_: object) -> None:
-        self._interrupted = True
-        self._control(b"stop")
-
-    def _watch(self) -> None:
-        waited_s = 0.0
-        while self._result is None:
-            received = self._bus.receive_by(time.monotonic() + POLL_S)
-            if received is not None:
-                self._take(*received)
-                continue
-            if self._family.died(topics.WORLD):
-                return
-            if self._end is not None:
-                waited_s += POLL_S
-                if self._family.died(topics.RECORDER) or waited_s > RESULT_S:
-                    return
-
-    def _take(self, what: str, data: bytes) -> None:
-        if what == topics.PROGRESS:
-            progress = decode(Progress, data)
-            self._tick = progress.tick
-            self._show(progress)
-        elif what == topics.RESTART:
-            self._family.start_robot(int(data))
-        elif what == topics.END:
-            self._end = decode(End, data)
-        elif what == topics.RESULT:
-            self._result = json.loads(data)
-
-    def _summary(self) -> dict[str, Any]:
-        processes = self._family.processes
-        log = str(self._order.out / "mission.mcap") if self._order.record else None
-        if self._result is not None:
-            summary = {**self._result, "processes": [process._asdict() for process in processes]}
-        elif self._end is not None:
-            summary = summarize(self._end.outcome, self._end.wall_s, None, log, processes)
-        else:
-            outcome = Outcome("aborted", self._last_words(), (), (), (), self._tick, 0.0, 0)
-            summary = summarize(outcome, 0.0, None, log, processes)
-        self._order.out.mkdir(parents=True, exist_ok=True)
-        (self._order.out / "summary.json").write_text(json.dumps(summary, indent=1) + "\n")
-        return summary
-
-    def _last_words(self) -> str:
-        code = self._family.children[topics.WORLD].returncode
-        if code is not None and code < 0:
-            return f"the world process died ({signal.Signals(-code).name})"
-        words = self._family.last_words(topics.WORLD)
-        if code == 2:
-            raise MissionError(words)
-        return f"the world process died: {words}"
+            deaths = group.deaths()
+            if deaths:
+                return deaths[0]
+    raise MissionError(f"the world process has not opened the bus within {CONNECT_S:g} s")
 
 
 def world_arguments(

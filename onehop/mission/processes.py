@@ -1,21 +1,27 @@
-"""The processes of one mission: children of the launcher, started, restarted, ended."""
+"""The processes of one mission: children of the launcher, started, restarted, watched, ended."""
 
 import os
+import shutil
 import signal
 import socket
 import subprocess
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from onehop.contracts import topics
+from onehop.contracts.messages import Death
 from onehop.node.bus import make_credentials
-from onehop.node.startup import CREDENTIALS_VARIABLE, PASSWORD_VARIABLE
+from onehop.node.startup import CREDENTIALS_VARIABLE, PASSWORD_VARIABLE, WORLD_IS_GONE
 from onehop.wire.summary import Process
 
 GRACE_S = 3.0
-"""Time between asking the children to end and killing them."""
+"""Time between asking the children to end and killing them [s]."""
+
+LAST_WORDS = 300
+"""Characters of a child's last line that are repeated where its death is told."""
 
 
 def free_endpoint() -> str:
@@ -25,22 +31,33 @@ def free_endpoint() -> str:
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
+@dataclass(slots=True)
+class _Child:
+    """The latest process of a name. incarnation: how often it was started again."""
+
+    process: subprocess.Popen[bytes]
+    incarnation: int
+    death_told: bool = False
+
+
 class ProcessGroup:
     """All children of one mission. Leaving the context ends every one of them.
 
     Each gets its own password through its environment, a lifeline that ends it when this process dies,
-    and a file in `logs` for what it says on stderr.
+    and a file in the folder `words` for what it says on stderr. If nobody said anything the folder goes.
     """
 
-    def __init__(self, endpoint: str, mission: str, robots: Sequence[int], folder: Path) -> None:
+    def __init__(self, endpoint: str, mission: str, robots: Sequence[int], words: Path) -> None:
         self._endpoint = endpoint
         self._mission = mission
-        self._folder = folder
+        self._words = words
         names = [topics.RADIO, topics.RECORDER, topics.OPERATOR, *map(topics.robot_name, robots)]
         self._passwords = make_credentials(names)
         self._lifeline, self._keep_open = os.pipe()
-        self.children: dict[str, subprocess.Popen[bytes]] = {}
+        self._children: dict[str, _Child] = {}
         self.processes: list[Process] = []
+        shutil.rmtree(words, ignore_errors=True)  # of an earlier mission in the same folder
+        words.mkdir(parents=True)
 
     def __enter__(self) -> "ProcessGroup":
         return self
@@ -49,10 +66,17 @@ class ProcessGroup:
         self.end()
         os.close(self._keep_open)
         os.close(self._lifeline)
+        if not self.said_something:
+            shutil.rmtree(self._words)
 
     @property
     def operator_password(self) -> str:
         return self._passwords[topics.OPERATOR]
+
+    @property
+    def said_something(self) -> bool:
+        """Whether any child has said something on stderr: none has a reason to, if all is well."""
+        return any(file.stat().st_size for file in self._words.iterdir())
 
     def start_world(self, arguments: Sequence[str]) -> None:
         self._start(topics.WORLD, "world_server", [*arguments, "--listen", self._endpoint])
@@ -76,8 +100,8 @@ class ProcessGroup:
             words = (f"{user}:{password}" for user, password in self._passwords.items())
             environment[CREDENTIALS_VARIABLE] = " ".join(words)
         command = [sys.executable, "-m", module, "--mission", self._mission]
-        with (self._folder / f"{name}.stderr").open("ab") as stderr:
-            child = subprocess.Popen(
+        with self._file(name).open("ab") as stderr:
+            process = subprocess.Popen(
                 [*command, "--lifeline", str(self._lifeline), *arguments],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
@@ -86,35 +110,60 @@ class ProcessGroup:
                 env=environment,
                 start_new_session=True,
             )
-        self.children[name] = child
-        self.processes.append(Process(name, child.pid))
+        before = self._children.get(name)
+        self._children[name] = _Child(process, before.incarnation + 1 if before else 0)
+        self.processes.append(Process(name, process.pid))
 
-    def died(self, name: str) -> bool:
-        """Whether a child has ended."""
-        return self.children[name].poll() is not None
+    def exit_status(self, name: str) -> int | None:
+        """Exit status of a child, negative for a signal, None while it runs."""
+        return self._children[name].process.poll()
+
+    def deaths(self) -> list[Death]:
+        """Children that have died since the last call, other than because the world was gone."""
+        deaths = []
+        for name, child in self._children.items():
+            if not child.death_told and child.process.poll() not in (None, 0, WORLD_IS_GONE):
+                child.death_told = True
+                deaths.append(Death(name, child.incarnation, self.account(name)))
+        return deaths
+
+    def account(self, name: str) -> str:
+        """How a child that has ended did so, with its last words, in one line."""
+        status = self._children[name].process.returncode
+        how = signal.Signals(-status).name if status < 0 else f"exit status {status}"
+        account, words = f"the {name} process died ({how})", self.last_words(name)
+        if not words:
+            return account
+        return f"{account}: {words:.{LAST_WORDS}}; all it said is in {self._file(name)}"
 
     def last_words(self, name: str) -> str:
-        """The last line that a child said on stderr."""
-        lines = (self._folder / f"{name}.stderr").read_text(errors="replace").strip().splitlines()
-        return lines[-1] if lines else "it said nothing"
+        """The last line that a child said on stderr, empty if it said nothing."""
+        lines = self._file(name).read_text(errors="replace").strip().splitlines()
+        return lines[-1].strip() if lines else ""
 
-    def end(self) -> None:
-        """Ask every child that still runs to end, then kill what does not."""
-        for send, wait_s in ((signal.SIGTERM, GRACE_S), (signal.SIGKILL, GRACE_S)):
-            running = [child for child in self.children.values() if child.poll() is None]
-            for child in running:
-                child.send_signal(send)
+    def _file(self, name: str) -> Path:
+        return self._words / f"{name}.txt"
+
+    def end(self, leave_s: float = 0.0) -> None:
+        """Give the children some time to leave [s], ask those that still run, then kill what does not.
+
+        First of all those that have been stopped go on: only then they can hear anything.
+        """
+        for number, wait_s in (
+            (signal.SIGCONT, leave_s),
+            (signal.SIGTERM, GRACE_S),
+            (signal.SIGKILL, GRACE_S),
+        ):
+            running = [one.process for one in self._children.values() if one.process.poll() is None]
+            for process in running:
+                process.send_signal(number)
             _wait(running, wait_s)
 
-    def await_end(self, seconds: float) -> None:
-        """Give the children time to end by themselves."""
-        _wait(list(self.children.values()), seconds)
 
-
-def _wait(children: Sequence[subprocess.Popen[bytes]], seconds: float) -> None:
+def _wait(processes: Sequence[subprocess.Popen[bytes]], seconds: float) -> None:
     deadline = time.monotonic() + seconds
-    for child in children:
+    for process in processes:
         try:
-            child.wait(max(0.0, deadline - time.monotonic()))
+            process.wait(max(0.0, deadline - time.monotonic()))
         except subprocess.TimeoutExpired:
             return

@@ -50,10 +50,14 @@ class Display:
             self._next_plain = now + PLAIN_S
             print(self._headline(progress, now).plain, file=sys.stderr, flush=True)
 
+    def tell(self, line: str) -> None:
+        """Show a line that stays."""
+        self._console.print(f"onehop run: {line}", markup=False, soft_wrap=True)
+
     def _headline(self, progress: Progress, now: float) -> Text:
         sim_s = progress.time_ns / 1e9
-        began, first_tick = self._started or (now, progress.tick)
-        rate = (progress.tick - first_tick) / (now - began) if now > began else 0.0
+        first_s, first_tick = self._started or (now, progress.tick)
+        rate = (progress.tick - first_tick) / (now - first_s) if now > first_s else 0.0
         factor = rate * self._scenario.clock.period_ms / 1000.0
         leaders = [line for line in progress.robots if line.status.leader == line.robot]
         words = [f"{self._scenario.name}  {sim_s:7.1f} s  {rate:6.0f} ticks/s  {factor:5.1f}x real time"]

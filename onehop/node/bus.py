@@ -1,10 +1,12 @@
 """Zenoh as this project uses it: one router (the world), all others clients, everyone with an identity.
 
-The router refuses every put, subscription and query that `rights` does not give to the sender's user
-name. A process receives from one channel, as (what, bytes), in arrival order; nothing may depend on that
-order. Liveliness changes come through the same channel. The channel is Zenoh's own: its network thread
-fills it without Python's interpreter lock, and the process's one thread takes from it. A Python callback
-costs a thread switch or two more for each message.
+The router refuses every put, subscription and query that the table in `rights` does not give to the
+sender's user name. A process receives from one channel, as (what, bytes), in arrival order; nothing may
+depend on that order. Liveliness changes come through the same channel. The channel is Zenoh's own: its
+network thread fills it without Python's interpreter lock, and the process's one thread takes from it. A
+Python callback costs a thread switch or two more for each message.
+
+No thread outlives its session: the pulse and the threads of Python callbacks end before it is closed.
 """
 
 import json
@@ -14,14 +16,17 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
+from queue import SimpleQueue
 from types import TracebackType
-from typing import Any, Self
+from typing import Any, Self, TypeVar
 
 import zenoh
 
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
+from onehop.node.rights import access_control
+
+T = TypeVar("T")
 
 ALIVE = b"alive"
 GONE = b"gone"
@@ -41,7 +46,8 @@ CONNECT_TIMEOUT_MS = 60_000
 """How long a client waits for the router to appear."""
 
 LEASE_MS = 3000
-"""Silence after which a stopped process counts as gone (Zenoh lease); a killed one is gone at once."""
+"""Silence after which a stopped process, the world too, counts as gone; a killed one is gone at once. A
+peer goes by the lease that the silent one announced (Zenoh's default is 10 s)."""
 
 ONE_THREAD = (
     "(rx: (handover: net), acc: (handover: net), app: (handover: net), tx: (handover: net), "
@@ -56,27 +62,6 @@ _QUIET = {
     "transport/unicast/qos/enabled": False,
 }
 """What nobody here uses. Without priorities a link is of low latency if both of its ends ask for it."""
-
-_PUT, _DELETE = "put", "delete"
-_SUBSCRIBE, _QUERY, _REPLY = "declare_subscriber", "query", "reply"
-_TOKEN = "liveliness_token"
-_WATCH, _ASK = "declare_liveliness_subscriber", "liveliness_query"
-
-
-@dataclass(frozen=True, slots=True)
-class Rights:
-    """What one identity may do: keys it may put, keys it may subscribe to."""
-
-    puts: tuple[str, ...]
-    hears: tuple[str, ...]
-
-
-def rights(name: str) -> Rights:
-    """The table: who may say and hear what."""
-    puts: tuple[str, ...] = (topics.by(name, "*"),)
-    if name == topics.RECORDER:
-        puts += (topics.to(topics.OPERATOR, topics.RESULT),)
-    return Rights(puts, (topics.heard(name),))
 
 
 def make_credentials(names: Iterable[str]) -> dict[str, str]:
@@ -94,6 +79,8 @@ class Bus:
         self._prefix = len(heard.removesuffix("**"))
         self._own = heard.replace("**", topics.WORLD + "/" if name == topics.WORLD else "")
         self._kept: list[Any] = []
+        self._called: list[Any] = []
+        self._callback_ends: list[SimpleQueue[threading.Thread]] = []
         self._pulse: threading.Thread | None = None
         self._closed = threading.Event()
         self._channel = session.declare_subscriber(heard, zenoh.handlers.FifoChannel(CHANNEL_MESSAGES))
@@ -104,8 +91,26 @@ class Bus:
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
     ) -> None:
-        self._closed.set()
-        self._session.close()  # type: ignore[no-untyped-call]
+        if not self._closed.is_set():
+            self._closed.set()
+            self._end_threads()
+            self._session.close()  # type: ignore[no-untyped-call]
+
+    def _end_threads(self) -> None:
+        """Wait for everything that may still use the session: on a closed one it would raise."""
+        self._channel.undeclare()  # type: ignore[no-untyped-call]  # lets go who waits for room in it
+        if self._pulse is not None:
+            self._pulse.join()
+        for declared in self._called:
+            declared.undeclare()
+        for end in self._callback_ends:
+            end.get().join()
+
+    def _callback(self, call: Callable[[T], None]) -> "zenoh.handlers.Callback[T]":
+        """A handler that calls from a thread of its own, whose end is noted when it is undeclared."""
+        end: SimpleQueue[threading.Thread] = SimpleQueue()
+        self._callback_ends.append(end)
+        return zenoh.handlers.Callback(call, drop=lambda: end.put(threading.current_thread()))
 
     def _key(self, key: str) -> str:
         return f"{self._mission}/{key}"
@@ -121,8 +126,12 @@ class Bus:
         return _limited(publisher.put, key) if _is_of_robot(key) else publisher.put
 
     def tell_self(self, what: str, data: bytes = b"") -> None:
-        """Let this process receive a message from itself; it does not leave the process."""
-        self._session.put(self._own + what, data, allowed_destination=zenoh.Locality.SESSION_LOCAL)
+        """Let this process receive a message from itself; after the session's end it is no message.
+
+        Signal handlers may call it at any time.
+        """
+        if not self._closed.is_set():
+            self._session.put(self._own + what, data, allowed_destination=zenoh.Locality.SESSION_LOCAL)
 
     def watch(self, name: str) -> None:
         """Receive ("alive/<name>", ALIVE or GONE) for a process, or "*", present ones included."""
@@ -132,8 +141,8 @@ class Bus:
             state = ALIVE if sample.kind == zenoh.SampleKind.PUT else GONE
             self.tell_self(str(sample.key_expr)[prefix:], state)
 
-        token = self._key(topics.alive(name))
-        self._kept.append(self._session.liveliness().declare_subscriber(token, changed, history=True))
+        liveliness, token = self._session.liveliness(), self._key(topics.alive(name))
+        self._called.append(liveliness.declare_subscriber(token, self._callback(changed), history=True))
 
     def announce(self, name: str) -> None:
         """Declare this process alive. Do it last: whoever sees the token may send at once."""
@@ -176,7 +185,7 @@ class Bus:
                 if data is not None:
                     query.reply(query.key_expr, data)
 
-        self._kept.append(self._session.declare_queryable(self._key(key), asked))
+        self._called.append(self._session.declare_queryable(self._key(key), self._callback(asked)))
 
     def ask(self, key: str, timeout_s: float) -> bytes | None:
         """The first answer to a query on a key, None when none comes in time."""
@@ -209,7 +218,6 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
         "mode": "router",
         "listen/endpoints": [endpoint],
         "scouting/delay": 0,
-        **_QUIET,
         "transport/unicast/lowlatency": True,
     }
     if credentials is None:
@@ -222,7 +230,7 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
             "password": secrets.token_hex(16),
             "dictionary_file": dictionary.name,
         }
-        settings["access_control"] = _access_control(mission, credentials)
+        settings["access_control"] = access_control(mission, credentials)
         return Bus(_open(settings), mission, topics.WORLD)
 
 
@@ -241,9 +249,7 @@ def open_client(
         "connect/exit_on_failure": True,
         "connect/retry": {"period_init_ms": 20, "period_max_ms": 200, "period_increase_factor": 1.5},
         "listen/endpoints": [],
-        **_QUIET,
         "transport/unicast/lowlatency": name.startswith(topics.robot_name("")),
-        "transport/link/tx/lease": LEASE_MS,
     }
     if password is not None:
         settings["transport/auth/usrpwd"] = {"user": name, "password": password}
@@ -253,54 +259,10 @@ def open_client(
 def _open(settings: Mapping[str, Any]) -> zenoh.Session:
     os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
     config = zenoh.Config()
-    for key, value in settings.items():
+    for key, value in {**_QUIET, "transport/link/tx/lease": LEASE_MS, **settings}.items():
         config.insert_json5(key, json.dumps(value))
     try:
         return zenoh.open(config)
     except zenoh.ZError as error:
         endpoint = settings["listen/endpoints"] or settings["connect/endpoints"]
         raise MissionError(f"no bus at {endpoint[0]}: {str(error).splitlines()[0]}") from None
-
-
-def _access_control(mission: str, names: Iterable[str]) -> dict[str, Any]:
-    """The table of `rights`, as Zenoh's configuration (ingress and egress as the router sees them)."""
-    rules: list[dict[str, Any]] = []
-    subjects: list[dict[str, Any]] = []
-    policies: list[dict[str, Any]] = []
-
-    def rule(name: str, flow: str, messages: list[str], keys: Iterable[str]) -> str:
-        identity = f"{name} {flow} {len(rules)}"
-        rules.append(
-            {
-                "id": identity,
-                "permission": "allow",
-                "flows": [flow],
-                "messages": messages,
-                "key_exprs": [f"{mission}/{key}" for key in keys],
-            }
-        )
-        return identity
-
-    for name in names:
-        may = rights(name)
-        granted = [
-            rule(name, "ingress", [_PUT, _DELETE], may.puts),
-            rule(name, "ingress", [_SUBSCRIBE], may.hears),
-            rule(name, "egress", [_PUT, _DELETE], may.hears),
-            rule(name, "egress", [_SUBSCRIBE], [topics.heard(topics.WORLD), *may.puts[1:]]),
-            rule(name, "ingress", [_QUERY], [topics.config(name)]),
-            rule(name, "egress", [_REPLY], [topics.config(name)]),
-            rule(name, "egress", ["declare_queryable"], [topics.config("*")]),
-            rule(name, "ingress", [_TOKEN], [topics.alive(name)]),
-            rule(name, "ingress", [_WATCH, _ASK], [topics.alive("*"), topics.alive(topics.WORLD)]),
-            rule(name, "egress", [_TOKEN], [topics.alive("*")]),
-        ]
-        subjects.append({"id": name, "usernames": [name]})
-        policies.append({"id": name, "rules": granted, "subjects": [name]})
-    return {
-        "enabled": True,
-        "default_permission": "deny",
-        "rules": rules,
-        "subjects": subjects,
-        "policies": policies,
-    }

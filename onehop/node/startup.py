@@ -7,6 +7,7 @@ import os
 import signal
 import sys
 import time
+import traceback
 from collections.abc import Callable
 
 from onehop.contracts import topics
@@ -21,6 +22,10 @@ CREDENTIALS_VARIABLE = "ONEHOP_CREDENTIALS"
 """Environment variable of the world: all names and passwords, as name:password words."""
 
 BRIEFING_TIMEOUT_S = 30.0
+"""How long the world may take to answer the question for a briefing [s]."""
+
+WORLD_IS_GONE = 3
+"""Exit status of a process that ends because the world has gone."""
 
 
 def arguments(program: str, purpose: str) -> argparse.ArgumentParser:
@@ -81,12 +86,18 @@ def calm_garbage_collector() -> None:
 
 
 def main(body: Callable[[], int]) -> None:
-    """Run a process to its exit status; what a person can mend is one line on stderr, status 2."""
+    """Run a process to its exit status; what a person can mend is one line on stderr, status 2.
+
+    A bug is a traceback, status 1. Either way the process ends here, whatever threads it still has.
+    """
     try:
         status = body()
     except OnehopError as error:
         print(error, file=sys.stderr)
         status = 2
+    except Exception:
+        traceback.print_exc()
+        status = 1
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)

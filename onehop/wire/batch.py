@@ -1,4 +1,4 @@
-"""Several wire messages as one: inboxes on the air, a percept, whole ticks for the recorder."""
+"""Several wire messages as one: what the radio carried, a percept, whole ticks for the recorder."""
 
 from typing import TypeAlias, TypeVar
 
@@ -13,8 +13,8 @@ T = TypeVar("T")
 TickMessages: TypeAlias = tuple[int, list[WireMessage]]
 """A tick and messages of it."""
 
-_RECORD: msgspec.msgpack.Decoder[TickMessages] = msgspec.msgpack.Decoder(TickMessages)
-_RECORDS: msgspec.msgpack.Decoder[list[TickMessages]] = msgspec.msgpack.Decoder(list[TickMessages])
+_TICK: msgspec.msgpack.Decoder[TickMessages] = msgspec.msgpack.Decoder(TickMessages)
+_TICKS: msgspec.msgpack.Decoder[list[TickMessages]] = msgspec.msgpack.Decoder(list[TickMessages])
 
 
 def pack_tick(tick: int, messages: list[WireMessage]) -> bytes:
@@ -24,21 +24,21 @@ def pack_tick(tick: int, messages: list[WireMessage]) -> bytes:
 
 def unpack_tick(data: bytes) -> TickMessages:
     """The inverse of pack_tick. Raises DecodeError."""
-    return _unpack(_RECORD, data)
+    return _unpack(_TICK, data)
 
 
-def pack_ticks(records: list[TickMessages]) -> bytes:
+def pack_ticks(ticks: list[TickMessages]) -> bytes:
     """Several ticks as one payload."""
-    return msgspec.msgpack.encode(records)
+    return msgspec.msgpack.encode(ticks)
 
 
 def unpack_ticks(data: bytes) -> list[TickMessages]:
     """The inverse of pack_ticks. Raises DecodeError."""
-    return _unpack(_RECORDS, data)
+    return _unpack(_TICKS, data)
 
 
 def _unpack(decoder: msgspec.msgpack.Decoder[T], data: bytes) -> T:
     try:
         return decoder.decode(data)
     except REFUSALS as error:
-        raise DecodeError(f"record: {error}") from None
+        raise DecodeError(f"messages of a tick: {error}") from None

@@ -1,6 +1,11 @@
-"""The summary of a mission: what `onehop run` prints and summary.json holds (cli design, `run`)."""
+"""The summary of a mission: what `onehop run` prints and summary.json holds (cli design, `run`).
 
-from collections.abc import Iterable
+One process of a mission writes the file: the launcher; without one the recorder; inline the run itself.
+"""
+
+import json
+from collections.abc import Iterable, Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from onehop.contracts.messages import Outcome
@@ -36,3 +41,14 @@ def summarize(
         "log": log,
         "collisions": outcome.collisions,
     }
+
+
+def summary_file(folder: Path) -> Path:
+    """Where the summary of the mission lies whose output goes to `folder`."""
+    return folder / "summary.json"
+
+
+def write_summary(folder: Path, summary: Mapping[str, Any]) -> None:
+    """Write summary.json."""
+    folder.mkdir(parents=True, exist_ok=True)
+    summary_file(folder).write_text(json.dumps(summary, indent=1) + "\n")

@@ -1,5 +1,6 @@
 """Who may say and hear what: the router holds everyone to the table, on loopback too."""
 
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack
@@ -10,6 +11,7 @@ import zenoh
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.mission.processes import free_endpoint
+from onehop.node import bus
 from onehop.node.bus import (
     ALIVE,
     GONE,
@@ -56,12 +58,12 @@ def test_everyone_is_heard_where_the_table_lets_them_speak(house: House) -> None
     for name in NAMES:
         house.clients[name].publisher(f"from/{name}/word")(name.encode())
         house.world.publisher(f"to/{name}/order")(name.encode())
-    house.clients["recorder"].publisher("to/operator/result")(b"summary")
+    house.clients["recorder"].publisher("to/operator/digest")(b"sha")
     assert _heard(house.world) == sorted((f"{name}/word", name.encode()) for name in NAMES)
     for name in NAMES:
         told = [("order", name.encode())]
         if name == "operator":
-            told.append(("result", b"summary"))
+            told.insert(0, ("digest", b"sha"))
         assert _heard(house.clients[name]) == told
 
 
@@ -83,7 +85,7 @@ def test_a_robot_hears_nothing_that_is_not_for_it(house: House) -> None:
     time.sleep(0.3)
     house.world.publisher("to/robot-1/percept")(b"scan")
     house.world.publisher("to/radio/truth")(b"poses")
-    house.clients["radio"].publisher("from/radio/air")(b"inboxes")
+    house.clients["radio"].publisher("from/radio/carried")(b"inboxes")
     house.clients["robot-1"].publisher("from/robot-1/out")(b"action")
     assert len(_heard(house.world)) == 2
     assert [ear.try_recv() for ear in ears] == [None] * len(ears)
@@ -120,8 +122,53 @@ def test_what_a_robots_link_cannot_carry_is_refused(house: House) -> None:
 
 
 def test_other_links_carry_messages_of_any_length(house: House) -> None:
-    record, air = bytes(3_000_000), bytes(500_000)
-    house.world.publisher("to/recorder/record")(record)
-    house.clients["radio"].publisher("from/radio/air")(air)
-    assert _heard(house.clients["recorder"]) == [("record", record)]
-    assert _heard(house.world) == [("radio/air", air)]
+    ticks, carried = bytes(3_000_000), bytes(500_000)
+    house.world.publisher("to/recorder/ticks")(ticks)
+    house.clients["radio"].publisher("from/radio/carried")(carried)
+    assert _heard(house.clients["recorder"]) == [("ticks", ticks)]
+    assert _heard(house.world) == [("radio/carried", carried)]
+
+
+def test_no_thread_outlives_its_session(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Sessions close while their pulse beats without a pause and others come and go."""
+    monkeypatch.setattr(bus, "PULSE_S", 0.0)
+    raised: list[threading.ExceptHookArgs] = []
+    monkeypatch.setattr(threading, "excepthook", raised.append)
+    before = threading.enumerate()
+    endpoint = free_endpoint()
+    for _ in range(10):
+        with open_router("m", endpoint) as world:
+            world.watch("*")
+            world.answer("config/*", lambda key: key.encode())
+            for _ in range(5):
+                with open_client("m", endpoint, "robot-1", None) as robot:
+                    robot.watch("*")
+                    robot.announce("robot-1")
+                    robot.ask(topics.config("robot-1"), 0.01)
+                    robot.receive_by(time.monotonic() + 0.01)
+                    robot.announce("robot-1")
+            world.receive_by(time.monotonic() + 0.01)
+    assert threading.enumerate() == before
+    assert raised == []
+    assert capfd.readouterr().err == ""
+
+
+def test_after_its_end_a_session_tells_itself_nothing() -> None:
+    """A signal handler that stops a process may run at any time, and cannot know."""
+    with open_router("m", free_endpoint()) as world:
+        world.tell_self("word")
+        assert world.receive() == ("world/word", b"")
+    world.tell_self("word")
+
+
+def test_a_session_closes_though_nobody_has_made_room_for_its_messages(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(bus, "CHANNEL_MESSAGES", 3)
+    monkeypatch.setattr(bus, "PULSE_S", 0.0)
+    with open_router("m", free_endpoint()) as world:
+        world.receive_by(time.monotonic() + 0.01)
+        time.sleep(0.1)
+    assert "pulse" not in [thread.name for thread in threading.enumerate()]

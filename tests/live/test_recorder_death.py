@@ -11,7 +11,7 @@ from onehop.analysis import open_log
 from onehop.analysis.salvage import salvage
 from onehop.drivers.replay import replay
 from onehop.wire.log_reader import LogFile
-from tests.live.test_processes import Mission
+from tests.live.mission import Mission
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
 
@@ -26,7 +26,7 @@ def test_a_killed_recorder_loses_five_ticks_at_most(number: int, tmp_path: Path)
     draw = np.random.default_rng(number)
     mission = Mission(tmp_path, "clock.limit_s=60")
     mission.await_ticks(int(draw.integers(20_000, 400_000)))
-    os.kill(mission.family()["onehop.recorder"], signal.SIGKILL)
+    os.kill(mission.children()["onehop.recorder"], signal.SIGKILL)
     summary = mission.finish()
     torn, saved = mission.out / "mission.mcap", tmp_path / "saved.mcap"
     told = salvage(torn, saved)

@@ -260,25 +260,28 @@ def test_a_fault_without_duration_lasts_until_it_is_healed() -> None:
     assert force == [(1, 1, True), (1, 1, True), (1, 1, False), (0, 0, False)]
 
 
-def test_an_injected_fault_begins_with_the_next_truth() -> None:
-    ground = world()
-    run(ground, 4)
-    ground.inject(FaultSection("hold", at_s=0.0, robots=(1,), duration_s=0.05))
-    ground.inject(FaultSection("kill", at_s=99.0, robots=(2,)))
+def test_a_fault_begins_with_the_first_truth_at_its_time_or_after() -> None:
+    ground = world(
+        FaultSection("hold", at_s=0.19, robots=(1,), duration_s=0.05),
+        FaultSection("kill", at_s=0.2, robots=(2,)),
+    )
+    run(ground, 3)
+    assert not ground.truth().present[0].held
+    run(ground, 1)
     assert ground.truth().present[0].held
     assert present(ground) == [1, 3]
     ground.advance({})
     assert not ground.truth().present[0].held
 
 
-def test_a_touch_is_reported_in_the_tick_in_which_it_begins() -> None:
+def test_a_contact_is_reported_in_the_tick_of_its_onset() -> None:
     ground = world(poses=((13.4, 10.0, 0.0),))
     contacts = []
     for v in (3.0, 3.0, 3.0, 3.0, 3.0, -1.0, 0.2, 3.0):
         ground.advance({1: action(v)})
         contacts.append(ground.truth().contacts)
-    touch = Contact(1, 0, pytest.approx(13.8, abs=1e-6), 10.0)
-    assert contacts == [(), (), (touch,), (), (), (), (), (touch,)]
+    onset = Contact(1, 0, pytest.approx(13.8, abs=1e-6), 10.0)
+    assert contacts == [(), (), (onset,), (), (), (), (), (onset,)]
 
 
 def test_two_robots_that_meet_are_one_contact() -> None:

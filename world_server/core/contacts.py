@@ -1,4 +1,4 @@
-"""Counts a touch once: from the tick in which it begins until the two are clearly apart again."""
+"""Contacts of robots with each other and with walls, each reported once: at its onset."""
 
 import math
 
@@ -6,35 +6,35 @@ from onehop.contracts.arrays import FloatArray
 from onehop.contracts.messages import Contact
 from world_server.core.motion import NOBODY, WALL, Motion, Rows
 
-_RELEASE = 0.02
-"""Gap that ends a touch [m]: a robot that trembles at a wall touches it once."""
+_RELEASE_GAP = 0.02
+"""Gap that ends a contact [m]: a robot that trembles at a wall has one contact with it."""
 
 OBSTACLE = 0
 """Stands for an obstacle where Contact.other could be a robot id."""
 
 
-class Touches:
-    """Who touches whom. robots: ids in the order of the rows of poses."""
+class ContactDetector:
+    """Who is in contact with whom. robots: ids in the order of the rows of poses."""
 
     def __init__(self, robots: tuple[int, ...], motion: Motion, radius: float) -> None:
         self._robots = robots
         self._motion = motion
         self._radius = radius
-        self._touching: set[tuple[int, int]] = set()
+        self._in_contact: set[tuple[int, int]] = set()
 
-    def begun(self, poses: FloatArray, touched: Rows) -> tuple[Contact, ...]:
+    def onsets(self, poses: FloatArray, touched: Rows) -> tuple[Contact, ...]:
         """Contacts that began in the last period; touched is what Motion.advance returned."""
-        self._touching = {pair for pair in self._touching if self._gap(poses, *pair) <= _RELEASE}
-        contacts: list[Contact] = []
+        self._in_contact = {pair for pair in self._in_contact if self._gap(poses, *pair) <= _RELEASE_GAP}
+        onsets: list[Contact] = []
         for row, other in enumerate(touched.tolist()):
             if other == NOBODY:
                 continue
             pair = (row, other) if other == WALL else (min(row, other), max(row, other))
-            if pair in self._touching:
+            if pair in self._in_contact:
                 continue
-            self._touching.add(pair)
-            contacts.append(self._contact(poses, row, other))
-        return tuple(contacts)
+            self._in_contact.add(pair)
+            onsets.append(self._contact(poses, row, other))
+        return tuple(onsets)
 
     def _contact(self, poses: FloatArray, row: int, other: int) -> Contact:
         x, y = float(poses[row, 0]), float(poses[row, 1])

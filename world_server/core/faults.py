@@ -1,4 +1,4 @@
-"""Scripted and injected faults: which are due, and which are in force.
+"""Scripted faults: which are due, and which are in force.
 
 Kill and restart are instants, and the world carries them out on its robots. Hold, cut and jam last for
 their duration, or to the next heal, or to the end. Everything changes at tick boundaries only.
@@ -27,19 +27,19 @@ class Faults:
 
     def due(self, time_ns: int) -> tuple[FaultSection, ...]:
         """Faults of the script whose time has come, each returned once, now in force."""
-        begun: list[FaultSection] = []
+        due: list[FaultSection] = []
         while self._waiting and _ns(self._waiting[0].at_s) <= time_ns:
             fault = self._waiting.pop(0)
-            begun.append(fault)
-            self.begin(fault, _ns(fault.at_s))
-        return tuple(begun)
+            due.append(fault)
+            self._begin(fault, _ns(fault.at_s))
+        return tuple(due)
 
     @property
     def will_restart(self) -> bool:
         """Whether the script has yet to restart somebody."""
         return any(fault.kind == "restart" for fault in self._waiting)
 
-    def begin(self, fault: FaultSection, time_ns: int) -> None:
+    def _begin(self, fault: FaultSection, time_ns: int) -> None:
         """Put one fault into force as of time_ns; a heal ends what it names, or everything."""
         if fault.kind == "heal":
             self._lasting = [lasting for lasting in self._lasting if not _heals(fault, lasting.fault)]

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts.arrays import FloatArray
+from onehop.contracts.beams import Beams
 from onehop.contracts.sections import RobotSection
 from onehop.maps.walls import WallMap
 from world_server.core.cells import CellList, IntArray, cell_at, cell_list
@@ -49,7 +50,7 @@ def _direction(x: float, y: float) -> float:
 @numba.njit(cache=True, error_model="numpy")
 def _edge_beams(
     ax: float, ay: float, bx: float, by: float, first: int, last: int,
-    fan: FloatArray, ranges: FloatArray,
+    directions: FloatArray, ranges: FloatArray,
 ) -> None:  # fmt: skip
     """Shorten those of the beams first..last that hit the segment a-b, given in the robot's frame.
 
@@ -57,7 +58,7 @@ def _edge_beams(
     """
     area = ax * by - ay * bx
     for beam in range(max(0, first), min(len(ranges) - 1, last) + 1):
-        dx, dy = fan[0, beam], fan[1, beam]
+        dx, dy = directions[0, beam], directions[1, beam]
         side_a, side_b = ax * dy - ay * dx, bx * dy - by * dx
         if (side_a > 0.0 and side_b > 0.0) or (side_a < 0.0 and side_b < 0.0):
             continue
@@ -70,14 +71,14 @@ def _edge_beams(
 @numba.njit(cache=True, error_model="numpy")
 def _inner_beams(
     ax: float, ay: float, bx: float, by: float, first: int, last: int,
-    fan: FloatArray, ranges: FloatArray,
+    directions: FloatArray, ranges: FloatArray,
 ) -> None:  # fmt: skip
     """Shorten the beams first..last, all known to hit the segment: without a branch, hence fast."""
     first, stop = max(0, first), min(len(ranges), last + 1)
     if stop <= first:
         return
     area, ex, ey = ax * by - ay * bx, ax - bx, ay - by
-    dx, dy, inner = fan[0, first:stop], fan[1, first:stop], ranges[first:stop]
+    dx, dy, inner = directions[0, first:stop], directions[1, first:stop], ranges[first:stop]
     for beam in range(len(inner)):
         reach = area / (ex * dy[beam] - ey * dx[beam])
         inner[beam] = reach if reach < inner[beam] else inner[beam]
@@ -86,7 +87,7 @@ def _inner_beams(
 @numba.njit(cache=True, error_model="numpy")
 def _look_at_wall(
     ax: float, ay: float, bx: float, by: float, limit: float, half: float, per_radian: float,
-    fan: FloatArray, ranges: FloatArray,
+    directions: FloatArray, ranges: FloatArray,
 ) -> None:  # fmt: skip
     """Shorten the beams that hit one segment a-b, given in the robot's frame [m]."""
     if half <= 0.5 * math.pi and ax < 0.0 and bx < 0.0:
@@ -105,23 +106,23 @@ def _look_at_wall(
         last = math.ceil((high - _SLACK + half) * per_radian) - 1
         if last < first:
             last = first - 1
-        _edge_beams(ax, ay, bx, by, outer, first - 1, fan, ranges)
-        _inner_beams(ax, ay, bx, by, first, last, fan, ranges)
+        _edge_beams(ax, ay, bx, by, outer, first - 1, directions, ranges)
+        _inner_beams(ax, ay, bx, by, first, last, directions, ranges)
         outer = math.floor((high + _SLACK + half) * per_radian)
-        _edge_beams(ax, ay, bx, by, last + 1, outer, fan, ranges)
+        _edge_beams(ax, ay, bx, by, last + 1, outer, directions, ranges)
     elif high - low <= math.pi + 2.0 * _SLACK:
-        _edge_beams(ax, ay, bx, by, 0, len(ranges) - 1, fan, ranges)
+        _edge_beams(ax, ay, bx, by, 0, len(ranges) - 1, directions, ranges)
     else:
         left = math.ceil((high - _SLACK + half) * per_radian)
-        _edge_beams(ax, ay, bx, by, left, len(ranges) - 1, fan, ranges)
+        _edge_beams(ax, ay, bx, by, left, len(ranges) - 1, directions, ranges)
         right = math.floor((low + _SLACK + half) * per_radian)
-        _edge_beams(ax, ay, bx, by, 0, right, fan, ranges)
+        _edge_beams(ax, ay, bx, by, 0, right, directions, ranges)
 
 
 @numba.njit(cache=True, error_model="numpy")
 def _look_at_disc(
     cx: float, cy: float, radius: float, limit: float, half: float, per_radian: float,
-    fan: FloatArray, ranges: FloatArray,
+    directions: FloatArray, ranges: FloatArray,
 ) -> None:  # fmt: skip
     """Shorten the beams that hit a disc, centre in the robot's frame [m].
 
@@ -135,7 +136,7 @@ def _look_at_disc(
         right = max(0, math.ceil((middle + lap - width + half) * per_radian))
         left = min(len(ranges) - 1, math.floor((middle + lap + width + half) * per_radian))
         for beam in range(right, left + 1):
-            dx, dy = fan[0, beam], fan[1, beam]
+            dx, dy = directions[0, beam], directions[1, beam]
             off = cx * dy - cy * dx
             if abs(off) > radius:
                 continue
@@ -146,11 +147,12 @@ def _look_at_disc(
 
 @numba.njit(cache=True, error_model="numpy")
 def _scan_all(
-    poses: FloatArray, looking: IntArray, radius: float, limit: float, half: float, fan: FloatArray,
-    frame: FloatArray, columns: int, rows: int, first: IntArray, segments: FloatArray, scans: Scans,
+    poses: FloatArray, looking: IntArray, radius: float, limit: float, half: float,
+    directions: FloatArray, frame: FloatArray, columns: int, rows: int, first: IntArray,
+    segments: FloatArray, scans: Scans,
 ) -> None:  # fmt: skip
     """Scan from the poses, (n, 3), numbered in `looking` into rows of scans; the others are seen."""
-    beams = fan.shape[1]
+    beams = directions.shape[1]
     per_radian = (beams - 1) / (2.0 * half)
     ranges = np.empty(beams)
     for row in range(len(looking)):
@@ -164,23 +166,29 @@ def _scan_all(
             bx, by = segments[item, 2] - x, segments[item, 3] - y
             _look_at_wall(
                 c * ax + s * ay, c * ay - s * ax, c * bx + s * by, c * by - s * bx,
-                limit, half, per_radian, fan, ranges,
+                limit, half, per_radian, directions, ranges,
             )  # fmt: skip
         for other in range(len(poses)):
             ax, ay = poses[other, 0] - x, poses[other, 1] - y
-            _look_at_disc(c * ax + s * ay, c * ay - s * ax, radius, limit, half, per_radian, fan, ranges)
+            _look_at_disc(
+                c * ax + s * ay, c * ay - s * ax, radius, limit, half, per_radian, directions, ranges
+            )
         for beam in range(beams):
             scans[row, beam] = ranges[beam] if ranges[beam] <= limit else math.inf
 
 
 class Laser:
-    """The lasers of a team on one map. Making it loads the compiled kernel: no tick waits for that."""
+    """The lasers of a team on one map. Making it loads the compiled kernel: no tick waits for that.
+
+    Directions of the beams are of full precision, as all sines in these kernels; those of Beams are
+    rounded to 0.007 nrad.
+    """
 
     def __init__(self, walls: WallMap, body: RobotSection) -> None:
-        self._half = math.radians(body.laser_fov_deg) / 2.0
-        angles = np.linspace(-self._half, self._half, body.laser_beams)
-        self._fan = np.array([direction(angle) for angle in angles]).T.copy()
-        self._range = body.laser_range
+        beams = Beams(body)
+        self._half = beams.half_view
+        self._directions = np.array([direction(angle) for angle in beams.angles]).T.copy()
+        self._range = beams.range
         self._radius = body.radius
         self._cells: CellList = cell_list(walls.segments, walls.bounds, body.laser_range)
         self.scans(np.empty((0, 3)), np.empty(0, dtype=np.int32))
@@ -190,6 +198,8 @@ class Laser:
 
         (k, n_beams) float32 [m], right to left; +inf where neither a wall nor a robot is in range.
         """
-        scans = np.empty((len(looking), self._fan.shape[1]), dtype=np.float32)
-        _scan_all(poses, looking, self._radius, self._range, self._half, self._fan, *self._cells, scans)
+        scans = np.empty((len(looking), self._directions.shape[1]), dtype=np.float32)
+        _scan_all(
+            poses, looking, self._radius, self._range, self._half, self._directions, *self._cells, scans
+        )
         return scans

@@ -25,7 +25,7 @@ from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import FaultSection
 from onehop.contracts.team import Status
 from onehop.maps.walls import WallMap
-from world_server.core.contacts import Touches
+from world_server.core.contacts import ContactDetector
 from world_server.core.faults import Faults
 from world_server.core.laser import Laser
 from world_server.core.motion import Motion
@@ -51,13 +51,13 @@ class World:
         self._twists = np.zeros((len(self._robots), 2))
         self._laser = Laser(walls, scenario.robot)
         self._motion = Motion(walls, scenario.robot, self._period_ns)
-        self._touches = Touches(self._robots, self._motion, scenario.robot.radius)
+        self._contact_detector = ContactDetector(self._robots, self._motion, scenario.robot.radius)
         self._faults = Faults(scenario.faults, self._robots)
         self._referee = Referee(scenario)
         self._incarnation = dict.fromkeys(self._robots, 0)
         self._present = dict.fromkeys(self._robots, True)
         self._statuses: dict[int, Status] = {}
-        self._offers: dict[int, TransmitRequest] = {}
+        self._transmit_requests: dict[int, TransmitRequest] = {}
         self._departures: list[Departure] = []
         self._contacts: tuple[Contact, ...] = ()
         self._collisions = 0
@@ -83,12 +83,14 @@ class World:
     def truth(self) -> Truth:
         """Ground truth of this tick: the same value until advance()."""
         if self._truth is None:
-            present, offers = self._presences(), self._offers
+            present, requests = self._presences(), self._transmit_requests
             self._truth = Truth(
                 tick=self.tick,
                 time_ns=self.time_ns,
                 present=present,
-                transmit_requests=tuple([offers[one.robot] for one in present if one.robot in offers]),
+                transmit_requests=tuple(
+                    [requests[one.robot] for one in present if one.robot in requests]
+                ),
                 cuts=self._faults.cuts,
                 jams=self._faults.jams,
                 contacts=self._contacts,
@@ -115,14 +117,14 @@ class World:
         Actions of robots that are not present, or of an earlier incarnation, are ignored. Raises
         ValueError for a twist that is not a number: a broken robot, not a state of the world.
         """
-        self._take(actions)
+        self._take_over(actions)
         touched = self._motion.advance(self._poses, self._twists)
-        self._contacts = self._touches.begun(self._poses, touched)
+        self._contacts = self._contact_detector.onsets(self._poses, touched)
         self._collisions += len(self._contacts)
         self.tick += 1
         self._begin_tick()
         if self._outcome is None:
-            self._outcome = self._referee.judge(self._scene(), self._faults.will_restart)
+            self._outcome = self._referee.judge(self._tick_summary(), self._faults.will_restart)
 
     def fence(self, robot: int, why: str) -> None:
         """Take a robot out of the mission, as of the next truth(): its process died or fell silent."""
@@ -140,29 +142,23 @@ class World:
             self._forget(robot)
             self._referee.on_return(robot)
 
-    def inject(self, fault: FaultSection) -> None:
-        """Carry out a fault that is not in the script, as of the next truth(); its at_s is ignored."""
-        self._faults.begin(fault, self.time_ns)
-        self._present_now = None
-        self._strike(fault)
-
     def outcome(self) -> Outcome | None:
         """How the mission ended, or None while it goes on."""
         return self._outcome
 
     def aborted(self, reason: str) -> Outcome:
         """The account of a mission that is broken off now."""
-        return self._referee.close("aborted", reason, self._scene())
+        return self._referee.close("aborted", reason, self._tick_summary())
 
     def _begin_tick(self) -> None:
         self._truth = self._present_now = None
         self._faults.expire(self.time_ns)
         self._due = self._faults.due(self.time_ns)
         for fault in self._due:
-            self._strike(fault)
+            self._carry_out(fault)
 
-    def _strike(self, fault: FaultSection) -> None:
-        """Carry out what of a fault concerns who is present."""
+    def _carry_out(self, fault: FaultSection) -> None:
+        """Carry out what of a fault concerns who is present, as of the next truth()."""
         if fault.kind == "kill":
             for robot in sorted(fault.robots):
                 self.fence(robot, KILLED)
@@ -175,12 +171,12 @@ class World:
         """Drop what the last process of a robot said and did."""
         self._present_now = None
         self._twists[self._row[robot]] = 0.0
-        self._offers.pop(robot, None)
+        self._transmit_requests.pop(robot, None)
         self._statuses.pop(robot, None)
 
-    def _take(self, actions: Mapping[int, Action]) -> None:
-        """Take over twists, offers and words of the robots that are present."""
-        self._offers = {}
+    def _take_over(self, actions: Mapping[int, Action]) -> None:
+        """Take over twists, transmit requests, statuses and notes of the robots that are present."""
+        self._transmit_requests = {}
         held = self._faults.held
         driven = [_AT_REST] * len(self._robots)
         for robot, row in self._row.items():
@@ -191,7 +187,7 @@ class World:
                 or action.incarnation != self._incarnation[robot]
             ):
                 continue
-            self._offers[robot] = TransmitRequest(
+            self._transmit_requests[robot] = TransmitRequest(
                 robot, action.speed, action.remaining_distance, action.outbox
             )
             self._statuses[robot] = action.status
@@ -225,7 +221,7 @@ class World:
             )
         return self._present_now
 
-    def _scene(self) -> TickSummary:
+    def _tick_summary(self) -> TickSummary:
         return TickSummary(
             self.tick,
             self.time_ns,

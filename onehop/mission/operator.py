@@ -1,0 +1,157 @@
+"""The launcher on the bus of a running mission: it shows, restarts, tells of deaths, and stops."""
+
+import math
+import signal
+import time
+from collections.abc import Callable
+from typing import NamedTuple
+
+from onehop.contracts import topics
+from onehop.contracts.errors import MissionError
+from onehop.contracts.messages import Death, End, Outcome, Progress
+from onehop.mission.processes import ProcessGroup
+from onehop.node.bus import ALIVE, Bus
+from onehop.wire.codec import decode, encode
+
+POLL_S = 0.1
+"""How often the children are looked at [s]: their end sends no message."""
+
+GONE_S = 1.0
+"""How long the world may be gone from the bus, while its process runs, until it is given up [s]."""
+
+DIGEST_S = 30.0
+"""How long the recorder may take for the end of the log [s]."""
+
+STOP_S = 10.0
+"""How long the world may take to end the mission when it is told to [s]."""
+
+CANNOT_RUN = 2
+"""Exit status of a process whose last words say what a person has to mend."""
+
+
+class Ending(NamedTuple):
+    """How a mission ended. wall_s: time of its ticks. digest: None if the recorder did not finish."""
+
+    outcome: Outcome
+    wall_s: float
+    digest: str | None
+    interrupted: bool = False
+
+
+def aborted(reason: str, ticks: int) -> Ending:
+    """The end of a mission whose world cannot say any more how it ended."""
+    return Ending(Outcome("aborted", reason, (), (), (), ticks, 0.0, 0), 0.0, None)
+
+
+def ending_by_death(group: ProcessGroup, name: str, ticks: int) -> Ending:
+    """The end of a mission by the death of one process, as its account says.
+
+    Raises MissionError when the world has found something that a person has to mend.
+    """
+    if name == topics.WORLD and group.exit_status(name) == CANNOT_RUN:
+        raise MissionError(group.last_words(name))
+    return aborted(group.account(name), ticks)
+
+
+class OperatorSession:
+    """One mission from the moment at which its bus is there.
+
+    show: takes progress, some times a second. tell: takes lines for people.
+    """
+
+    def __init__(
+        self,
+        group: ProcessGroup,
+        bus: Bus,
+        show: Callable[[Progress], None],
+        tell: Callable[[str], None],
+    ) -> None:
+        self._group = group
+        self._bus = bus
+        self._show = show
+        self._tell = tell
+        self._tick = 0
+        self._end: End | None = None
+        self._end_s = math.inf
+        self._digest: str | None = None
+        self._unreported: list[Death] = []
+        self._world_listens = False
+        self._gone_s = math.inf
+        self._stop_s = math.inf
+        self._control = bus.publisher(topics.by(topics.OPERATOR, topics.CONTROL))
+        self._report = bus.publisher(topics.by(topics.OPERATOR, topics.DIED))
+        bus.watch(topics.WORLD)
+
+    def until_end(self) -> Ending:
+        """Watch over the mission to its end. Raises MissionError when it could not be run."""
+        previous = {
+            number: signal.signal(number, self._on_signal) for number in (signal.SIGINT, signal.SIGTERM)
+        }
+        try:
+            self._watch()
+        finally:
+            for number, handler in previous.items():
+                signal.signal(number, handler)
+        return self._ending()._replace(interrupted=self._stop_s < math.inf)
+
+    def _on_signal(self, *_: object) -> None:
+        self._stop_s = min(self._stop_s, time.monotonic())
+        self._control(b"stop")
+
+    def _watch(self) -> None:
+        """Until outcome and digest are there, or nothing more can come."""
+        while self._end is None or self._digest is None:
+            received = self._bus.receive_by(time.monotonic() + POLL_S)
+            self._look_at_children()
+            if received is not None:
+                self._take(*received)
+            elif self._is_all_over(time.monotonic()):
+                return
+
+    def _look_at_children(self) -> None:
+        """Tell people and the world of children that have died."""
+        for death in self._group.deaths():
+            self._tell(death.account)
+            self._unreported.append(death)
+        if self._world_listens:
+            for death in self._unreported:
+                self._report(encode(death))
+            self._unreported.clear()
+
+    def _take(self, what: str, data: bytes) -> None:
+        if what == topics.PROGRESS:
+            progress = decode(Progress, data)
+            self._tick = progress.tick
+            self._show(progress)
+        elif what == topics.RESTART:
+            self._group.start_robot(int(data))
+        elif what == topics.END and data:
+            self._end, self._end_s = decode(End, data), time.monotonic()
+        elif what == topics.DIGEST:
+            self._digest = data.decode()
+        elif what == topics.alive(topics.WORLD):
+            self._world_listens = data == ALIVE
+            self._gone_s = math.inf if self._world_listens else time.monotonic()
+
+    def _is_all_over(self, now: float) -> bool:
+        """Whether nothing more can come, now that nothing has."""
+        if self._group.exit_status(topics.WORLD) is not None or self._given_up(now) is not None:
+            return True
+        recorder_ended = self._group.exit_status(topics.RECORDER) is not None
+        return self._end is not None and (recorder_ended or now - self._end_s > DIGEST_S)
+
+    def _given_up(self, now: float) -> str | None:
+        """Why a world whose process runs is not waited for any more."""
+        if now - self._gone_s > GONE_S:
+            return "the world process is gone from the bus: stopped, or cut off"
+        if now - self._stop_s > STOP_S:
+            return "stopped by the operator, and the world did not end the mission"
+        return None
+
+    def _ending(self) -> Ending:
+        if self._end is not None:
+            return Ending(self._end.outcome, self._end.wall_s, self._digest)
+        if self._group.exit_status(topics.WORLD):
+            return ending_by_death(self._group, topics.WORLD, self._tick)
+        lost = "the world process ended, and its last word was lost"
+        return aborted(self._given_up(time.monotonic()) or lost, self._tick)

@@ -1,0 +1,90 @@
+"""Who may put, hear, ask, announce and watch what on the bus: one table, and Zenoh's form of it.
+
+The world is the router and may do everything; what stands here is held against everyone else by the
+router, which knows each of them by the password of its user name. Expressions stand without the
+mission's prefix.
+"""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from onehop.contracts import topics
+
+
+@dataclass(frozen=True, slots=True)
+class Rights:
+    """What one identity may do.
+
+    puts: what it may send. hears: what it may subscribe to. asks: what it may query. announces: the
+    liveliness token that it may declare. watches: whose tokens it may see. audience: what those declare
+    who hear its puts; Zenoh sends nothing of a publisher that may not see its subscribers.
+    """
+
+    puts: tuple[str, ...]
+    hears: str
+    asks: str
+    announces: str
+    watches: tuple[str, ...]
+    audience: tuple[str, ...]
+
+
+def rights(name: str) -> Rights:
+    """The table."""
+    puts, audience = [topics.by(name, "*")], [topics.heard(topics.WORLD)]
+    if name == topics.RECORDER:
+        puts.append(topics.to(topics.OPERATOR, topics.DIGEST))
+        audience.append(topics.heard(topics.OPERATOR))
+    return Rights(
+        puts=tuple(puts),
+        hears=topics.heard(name),
+        asks=topics.config(name),
+        announces=topics.alive(name),
+        watches=(topics.alive("*"), topics.alive(topics.WORLD)),
+        audience=tuple(audience),
+    )
+
+
+def access_control(mission: str, names: Iterable[str]) -> dict[str, Any]:
+    """Zenoh's `access_control` that grants each name its rights and nothing else."""
+    rules: list[dict[str, Any]] = []
+    subjects: list[dict[str, Any]] = []
+    policies: list[dict[str, Any]] = []
+    for name in names:
+        granted = list(_rules(mission, name))
+        rules += granted
+        subjects.append({"id": name, "usernames": [name]})
+        policies.append({"id": name, "rules": [rule["id"] for rule in granted], "subjects": [name]})
+    return {
+        "enabled": True,
+        "default_permission": "deny",
+        "rules": rules,
+        "subjects": subjects,
+        "policies": policies,
+    }
+
+
+def _rules(mission: str, name: str) -> Iterator[dict[str, Any]]:
+    """Zenoh's rules for one name; ingress is what it sends to the router, egress what it is sent."""
+    may = rights(name)
+    for number, (flow, messages, keys) in enumerate(
+        (
+            ("ingress", ("put", "delete"), may.puts),
+            ("egress", ("declare_subscriber",), may.audience),
+            ("ingress", ("declare_subscriber",), (may.hears,)),
+            ("egress", ("put", "delete"), (may.hears,)),
+            ("ingress", ("query",), (may.asks,)),
+            ("egress", ("reply",), (may.asks,)),
+            ("egress", ("declare_queryable",), (topics.config("*"),)),
+            ("ingress", ("liveliness_token",), (may.announces,)),
+            ("ingress", ("declare_liveliness_subscriber", "liveliness_query"), may.watches),
+            ("egress", ("liveliness_token",), may.watches[:1]),
+        )
+    ):
+        yield {
+            "id": f"{name} {number}",
+            "permission": "allow",
+            "flows": [flow],
+            "messages": list(messages),
+            "key_exprs": [f"{mission}/{key}" for key in keys],
+        }

@@ -1,0 +1,93 @@
+"""A mission as a child of the test, with its own children, which tests kill and stop."""
+
+import json
+import subprocess
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from tests.onehop.scenes import FIELD
+
+DEADLINE_S = 120.0
+
+
+class Mission:
+    """`onehop run` of the small scene in a child, with its log growing in `out`."""
+
+    def __init__(self, folder: Path, *settings: str) -> None:
+        self.out = folder / "out"
+        scenario = folder / "field.toml"
+        scenario.write_text(FIELD)
+        command = [
+            sys.executable,
+            "-m",
+            "onehop",
+            "run",
+            str(scenario),
+            "--json",
+            "--out",
+            str(self.out),
+        ]
+        for setting in settings:
+            command += ["--set", setting]
+        self.child = subprocess.Popen(
+            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+        )
+
+    def finish(self) -> dict[str, Any]:
+        """The summary; the child's own end is part of what is tested."""
+        return self.finish_and_say()[0]
+
+    def finish_and_say(self) -> tuple[dict[str, Any], str]:
+        """The summary, and what was said on stderr."""
+        told, said = self.child.communicate(timeout=DEADLINE_S)
+        assert told, said
+        return json.loads(told), said
+
+    def children(self) -> dict[str, int]:
+        """Processes of the mission by name, from the process table: what `ps` would show."""
+        found: dict[str, int] = {}
+        for entry in Path("/proc").iterdir():
+            try:
+                words = (entry / "cmdline").read_text().split("\0") if entry.name.isdigit() else []
+                parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1]) if words else 0
+            except OSError:
+                continue
+            if parent == self.child.pid and "-m" in words:
+                name = words[words.index("-m") + 1]
+                if name == "robot_agent":
+                    name += f" {words[words.index('--id') + 1]}"
+                found[name] = int(entry.name)
+        return found
+
+    def await_child(self, name: str) -> int:
+        """The process id of a child, as soon as it has been started."""
+        deadline = time.monotonic() + DEADLINE_S
+        while (pid := self.children().get(name)) is None:
+            assert time.monotonic() < deadline
+            assert self.child.poll() is None
+        return pid
+
+    def end_s(self) -> float:
+        """When the mission was over, as its summary says (time.time() [s]); figures come after it."""
+        return (self.out / "summary.json").stat().st_mtime
+
+    def await_ticks(self, size: int = 60_000) -> None:
+        """Wait until the log has grown: the mission is under way."""
+        log = self.out / "mission.mcap"
+        deadline = time.monotonic() + DEADLINE_S
+        while not (log.exists() and log.stat().st_size > size):
+            assert time.monotonic() < deadline
+            assert self.child.poll() is None
+            time.sleep(0.005)
+
+
+def gone(pids: list[int]) -> bool:
+    """Whether all of these processes have ended, or do so in a few seconds."""
+    deadline = time.monotonic() + 15.0
+    while time.monotonic() < deadline:
+        if not any(Path(f"/proc/{pid}").exists() for pid in pids):
+            return True
+        time.sleep(0.05)
+    return False

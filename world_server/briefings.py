@@ -1,0 +1,33 @@
+"""What each process is told when it asks at its start: no robot learns the map, or others' poses."""
+
+from onehop.contracts import topics
+from onehop.contracts.arrays import FloatArray
+from onehop.contracts.briefings import LogBriefing, radio_briefing, robot_briefing
+from onehop.scenario.bundle import Bundle
+from onehop.wire.codec import encode
+from world_server.roll_call import RollCall
+
+
+class Briefings:
+    """Answers for one mission.
+
+    walls: (n, 4) segments [m]. driver: what the log calls this way of running.
+    """
+
+    def __init__(self, bundle: Bundle, walls: FloatArray, driver: str, roll: RollCall) -> None:
+        self._scenario = bundle.scenario
+        self._roll = roll
+        self._robots = {topics.config(topics.robot_name(i)): i for i in bundle.scenario.team.robots}
+        log = LogBriefing(driver, bundle.scenario_json(), tuple(sorted(bundle.files.items())))
+        self._others = {
+            topics.config(topics.RADIO): encode(radio_briefing(bundle.scenario, walls)),
+            topics.config(topics.RECORDER): encode(log),
+        }
+
+    def answer(self, key: str) -> bytes | None:
+        """The briefing that a process asks for under this key, None if there is none."""
+        robot = self._robots.get(key)
+        if robot is None:
+            return self._others.get(key)
+        incarnation = self._roll.incarnation(topics.robot_name(robot))
+        return encode(robot_briefing(self._scenario, robot, incarnation))

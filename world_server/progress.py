@@ -1,0 +1,29 @@
+"""Some numbers for people, some times a second."""
+
+import time
+from collections.abc import Mapping
+
+from onehop.contracts import topics
+from onehop.contracts.messages import Action, Progress, RobotProgress, Truth
+from onehop.node.bus import Bus
+from onehop.wire.codec import encode
+
+PROGRESS_S = 0.2
+"""Wall-clock time between two reports [s]."""
+
+
+class ProgressReports:
+    """Reports to the operator, who may or may not listen."""
+
+    def __init__(self, bus: Bus) -> None:
+        self._put = bus.publisher(topics.to(topics.OPERATOR, topics.PROGRESS), express=False)
+        self._next_s = 0.0
+
+    def report(self, truth: Truth, actions: Mapping[int, Action]) -> None:
+        """Report a tick, if it is time. actions: by robot, ids ascending."""
+        now = time.monotonic()
+        if now < self._next_s:
+            return
+        self._next_s = now + PROGRESS_S
+        lines = tuple(RobotProgress(i, action.twist.v, action.status) for i, action in actions.items())
+        self._put(encode(Progress(truth.tick, truth.time_ns, lines)))

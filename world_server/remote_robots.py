@@ -1,0 +1,95 @@
+"""The robots as the world calls them: a percept to each that is present, an action back from each."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import partial
+
+from onehop.contracts import topics
+from onehop.contracts.errors import DecodeError
+from onehop.contracts.messages import Action, Truth
+from onehop.node.bus import Bus
+from onehop.wire.batch import pack_tick
+from onehop.wire.codec import decode
+from onehop.wire.journal import WireMessage
+from world_server.mailbox import Mailbox
+from world_server.roll_call import RollCall
+
+
+@dataclass(slots=True)
+class Answers:
+    """What the robots gave for one tick, each by id in ascending order.
+
+    actions: of those who gave one. wire: the same as the bytes that arrived. fenced: why the others gave
+    none, and are to be left out from the next tick on.
+    """
+
+    actions: dict[int, Action] = field(default_factory=dict)
+    wire: list[WireMessage] = field(default_factory=list)
+    fenced: dict[int, str] = field(default_factory=dict)
+
+
+class RemoteRobots:
+    """The robot processes. silence_s: how long they may take for a tick [s], on the wall clock."""
+
+    def __init__(
+        self, bus: Bus, mail: Mailbox, roll: RollCall, robots: tuple[int, ...], silence_s: float
+    ) -> None:
+        self._mail = mail
+        self._roll = roll
+        self._silence_s = silence_s
+        self._put = {i: bus.publisher(topics.to(topics.robot_name(i), topics.PERCEPT)) for i in robots}
+        self._tick = 0
+        self._awaited: dict[str, int] = {}
+        self._given: dict[int, tuple[Action, bytes]] = {}
+        self._refused: dict[int, str] = {}
+        for i in robots:
+            mail.read(topics.robot_name(i), topics.OUT, partial(self._on_action, i))
+
+    def step(
+        self, truth: Truth, observations: Mapping[str, bytes], inboxes: Mapping[str, bytes]
+    ) -> Answers:
+        """Let every present robot take its step, and wait for all of them.
+
+        observations, inboxes: wire messages of this tick by log channel. Raises MissionBrokenError.
+        """
+        self._tick = truth.tick
+        self._awaited = {topics.robot_name(one.robot): one.incarnation for one in truth.present}
+        self._given.clear()
+        self._refused.clear()
+        for one in truth.present:
+            seen, heard = topics.obs(one.robot), topics.rx(one.robot)
+            percept = [(seen, observations[seen]), (heard, inboxes[heard])]
+            self._put[one.robot](pack_tick(truth.tick, percept))
+        present, awaited = self._roll.present, self._awaited.keys()
+        self._mail.wait(lambda: awaited.isdisjoint(present), self._silence_s)
+        return self._answers(truth)
+
+    def _answers(self, truth: Truth) -> Answers:
+        answers = Answers()
+        for one in truth.present:
+            i = one.robot
+            if i in self._given:
+                answers.actions[i], data = self._given[i]
+                answers.wire.append((topics.out(i), data))
+            elif i in self._refused:
+                answers.fenced[i] = self._refused[i]
+            elif topics.robot_name(i) in self._roll.present:
+                answers.fenced[i] = f"silent for {self._silence_s:g} s"
+            else:
+                answers.fenced[i] = "its process died"
+        return answers
+
+    def _on_action(self, robot: int, data: bytes) -> None:
+        name = topics.robot_name(robot)
+        incarnation = self._awaited.get(name)
+        if incarnation is None:
+            return
+        try:
+            action = decode(Action, data)
+        except DecodeError as error:
+            self._refused[robot] = f"put no action: {error}"
+            del self._awaited[name]
+            return
+        if (action.tick, action.incarnation) == (self._tick, incarnation):
+            self._given[robot] = action, data
+            del self._awaited[name]
