@@ -11,7 +11,6 @@ from onehop.contracts.errors import DecodeError
 from onehop.wire.codec import as_map
 from onehop.wire.difference import first_difference
 from onehop.wire.journal import canonical_rank
-from onehop.wire.log_reader import LoggedTick
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,35 +42,50 @@ class Comparison:
 def compare(a: Log, b: Log) -> Comparison:
     """Compare two logs message by message, in canonical order, until the shorter one ends."""
     found = Comparison(scenario=list(_scenario_differences(as_map(a.scenario), as_map(b.scenario), "")))
-    ticks_a, ticks_b = a.file.ticks(), b.file.ticks()
+    left, right = _ticks(a), _ticks(b)
     while True:
-        one, other = next(ticks_a, None), next(ticks_b, None)
-        if one is None or other is None:
-            _add(found, _end(one, other))
+        mine, other = next(left, None), next(right, None)
+        if mine is None or other is None:
+            _add(found, _end(mine, other))
             return found
         found.ticks += 1
-        for difference in _of_tick(one, other, found):
+        for difference in _of_tick(mine, other, found):
             _add(found, difference)
-        if one.tick != other.tick:
+        if mine[0] != other[0]:
             return found
 
 
-def _of_tick(a: LoggedTick, b: LoggedTick, found: Comparison) -> Iterator[Difference]:
-    if a.tick != b.tick:
-        yield Difference(min(a.tick, b.tick), "", "tick", a.tick, b.tick)
+TickMessages = tuple[int, dict[str, bytes]]
+"""A tick, and its wire messages by bus key, as they stand in the log."""
+
+
+def _ticks(log: Log) -> Iterator[TickMessages]:
+    tick, messages = -1, dict[str, bytes]()
+    for number, key, data in log.messages("truth", "radio", "rx/", "obs/", "out/"):
+        if number != tick:
+            if messages:
+                yield tick, messages
+            tick, messages = number, {}
+        messages[key] = data
+    if messages:
+        yield tick, messages
+
+
+def _of_tick(a: TickMessages, b: TickMessages, found: Comparison) -> Iterator[Difference]:
+    if a[0] != b[0]:
+        yield Difference(min(a[0], b[0]), "", "tick", a[0], b[0])
         return
-    in_a, in_b = dict(a.messages), dict(b.messages)
-    for key in sorted({*in_a, *in_b}, key=canonical_rank):
+    for key in sorted({*a[1], *b[1]}, key=canonical_rank):
         found.messages += 1
-        one, other = in_a.get(key), in_b.get(key)
-        if one == other:
+        mine, other = a[1].get(key), b[1].get(key)
+        if mine == other:
             continue
-        if one is None or other is None:
-            yield Difference(a.tick, topics.wire(key), "message", _presence(one), _presence(other))
+        if mine is None or other is None:
+            yield Difference(a[0], topics.wire(key), "message", _presence(mine), _presence(other))
         elif found.first is None:
-            yield Difference(a.tick, topics.wire(key), *_field(one, other))
+            yield Difference(a[0], topics.wire(key), *_field(mine, other))
         else:
-            yield Difference(a.tick, topics.wire(key), "", None, None)
+            yield Difference(a[0], topics.wire(key), "", None, None)
 
 
 def _add(found: Comparison, difference: Difference | None) -> None:
@@ -92,11 +106,11 @@ def _field(a: bytes, b: bytes) -> tuple[str, Any, Any]:
     return different or ("bytes", a.hex(), b.hex())
 
 
-def _end(a: LoggedTick | None, b: LoggedTick | None) -> Difference | None:
+def _end(a: TickMessages | None, b: TickMessages | None) -> Difference | None:
     longer = a or b
     if longer is None:
         return None
-    return Difference(longer.tick, "", "end of the log", *("goes on" if one else None for one in (a, b)))
+    return Difference(longer[0], "", "end of the log", *("goes on" if one else None for one in (a, b)))
 
 
 def _scenario_differences(a: Any, b: Any, path: str) -> Iterator[tuple[str, Any, Any]]:
