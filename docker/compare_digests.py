@@ -10,8 +10,8 @@ containers = json.loads(Path(sys.argv[1]).read_text())
 with tempfile.TemporaryDirectory() as folder:
     command = [sys.executable, "-m", "onehop", "run", sys.argv[2], "--driver", "inline", "--json"]
     command += ["--no-record", "--out", folder]
-    told = subprocess.run(command, capture_output=True, text=True, check=False)
-inline = json.loads(told.stdout)
+    asked = subprocess.run(command, capture_output=True, text=True, check=False)
+inline = json.loads(asked.stdout)
 print(
     f"containers  {containers['outcome']}: {containers['reason']}, {containers['ticks_per_s']} ticks/s"
 )

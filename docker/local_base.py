@@ -92,8 +92,8 @@ def _libraries(binaries: Iterable[Path]) -> set[str]:
     """Paths of all shared libraries that the binaries load, the dynamic linker included."""
     found: set[str] = set()
     for binary in binaries:
-        told = subprocess.run(["ldd", str(binary)], capture_output=True, text=True, check=False)
-        found.update(match.group(1) for match in _LIBRARY.finditer(told.stdout))
+        asked = subprocess.run(["ldd", str(binary)], capture_output=True, text=True, check=False)
+        found.update(match.group(1) for match in _LIBRARY.finditer(asked.stdout))
     return {path for path in found if PACKAGES not in path and "site-packages" not in path}
 
 

@@ -299,7 +299,7 @@ class End(Wire, frozen=True):
 
 
 class Death(Wire, frozen=True):
-    """Operator to world (key died): a process has ended that was not asked to.
+    """Operator to world (key died): a process has ended by a signal or with an error.
 
     incarnation: how often it had been started again. account: how it ended, and its last words.
     """

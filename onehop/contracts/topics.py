@@ -56,7 +56,7 @@ CONTROL = "control"
 """Operator to world: end the mission now."""
 
 DIED = "died"
-"""Operator to world: a process has ended that was not asked to, and how."""
+"""Operator to world: a process has died, and how."""
 
 RESTART = "restart"
 """World to operator: start the process of this robot again."""

@@ -41,9 +41,9 @@ class Mission:
 
     def finish_and_say(self) -> tuple[dict[str, Any], str]:
         """The summary, and what was said on stderr."""
-        told, said = self.child.communicate(timeout=DEADLINE_S)
-        assert told, said
-        return json.loads(told), said
+        printed, said = self.child.communicate(timeout=DEADLINE_S)
+        assert printed, said
+        return json.loads(printed), said
 
     def children(self) -> dict[str, int]:
         """Processes of the mission by name, from the process table: what `ps` would show."""

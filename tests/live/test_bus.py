@@ -27,7 +27,7 @@ pytestmark = pytest.mark.live
 NAMES = ("radio", "recorder", "operator", "robot-1", "robot-2")
 
 
-class House:
+class Network:
     """A router and one client for each identity, all in this process."""
 
     def __init__(self, stack: ExitStack) -> None:
@@ -42,9 +42,9 @@ class House:
 
 
 @pytest.fixture
-def house() -> Iterator[House]:
+def network() -> Iterator[Network]:
     with ExitStack() as stack:
-        yield House(stack)
+        yield Network(stack)
 
 
 def _heard(bus: Bus) -> list[tuple[str, bytes]]:
@@ -54,79 +54,79 @@ def _heard(bus: Bus) -> list[tuple[str, bytes]]:
     return sorted(messages)
 
 
-def test_everyone_is_heard_where_the_table_lets_them_speak(house: House) -> None:
+def test_everyone_is_heard_where_the_table_lets_them_speak(network: Network) -> None:
     for name in NAMES:
-        house.clients[name].publisher(f"from/{name}/word")(name.encode())
-        house.world.publisher(f"to/{name}/order")(name.encode())
-    house.clients["recorder"].publisher("to/operator/digest")(b"sha")
-    assert _heard(house.world) == sorted((f"{name}/word", name.encode()) for name in NAMES)
+        network.clients[name].publisher(f"from/{name}/word")(name.encode())
+        network.world.publisher(f"to/{name}/order")(name.encode())
+    network.clients["recorder"].publisher("to/operator/digest")(b"sha")
+    assert _heard(network.world) == sorted((f"{name}/word", name.encode()) for name in NAMES)
     for name in NAMES:
-        told = [("order", name.encode())]
+        heard = [("order", name.encode())]
         if name == "operator":
-            told.insert(0, ("digest", b"sha"))
-        assert _heard(house.clients[name]) == told
+            heard.insert(0, ("digest", b"sha"))
+        assert _heard(network.clients[name]) == heard
 
 
-def test_a_robot_cannot_speak_for_another_or_around_the_radio(house: House) -> None:
-    robot = house.clients["robot-2"]
+def test_a_robot_cannot_speak_for_another_or_around_the_radio(network: Network) -> None:
+    robot = network.clients["robot-2"]
     for name in ("robot-1", "radio", "recorder", "operator", "world"):
         robot.publisher(f"from/{name}/word")(b"forged")
         robot.publisher(f"to/{name}/order")(b"forged")
     robot.publisher("truth")(b"forged")
-    assert _heard(house.world) == []
+    assert _heard(network.world) == []
     for name in ("robot-1", "radio", "recorder", "operator"):
-        assert _heard(house.clients[name]) == []
+        assert _heard(network.clients[name]) == []
 
 
-def test_a_robot_hears_nothing_that_is_not_for_it(house: House) -> None:
-    spy = house.clients["robot-2"]._session
+def test_a_robot_hears_nothing_that_is_not_for_it(network: Network) -> None:
+    spy = network.clients["robot-2"]._session
     keys = ("m/to/robot-1/**", "m/from/**", "m/to/radio/**", "m/**")
     ears = [spy.declare_subscriber(key, zenoh.handlers.FifoChannel(100)) for key in keys]
     time.sleep(0.3)
-    house.world.publisher("to/robot-1/percept")(b"scan")
-    house.world.publisher("to/radio/truth")(b"poses")
-    house.clients["radio"].publisher("from/radio/carried")(b"inboxes")
-    house.clients["robot-1"].publisher("from/robot-1/out")(b"action")
-    assert len(_heard(house.world)) == 2
+    network.world.publisher("to/robot-1/percept")(b"scan")
+    network.world.publisher("to/radio/truth")(b"poses")
+    network.clients["radio"].publisher("from/radio/carried")(b"inboxes")
+    network.clients["robot-1"].publisher("from/robot-1/out")(b"action")
+    assert len(_heard(network.world)) == 2
     assert [ear.try_recv() for ear in ears] == [None] * len(ears)
 
 
-def test_liveliness_comes_with_the_messages(house: House) -> None:
-    house.world.watch("*")
-    robot = house.clients["robot-1"]
+def test_liveliness_comes_with_the_messages(network: Network) -> None:
+    network.world.watch("*")
+    robot = network.clients["robot-1"]
     robot.announce("robot-1")
-    assert _heard(house.world) == [("world/alive/robot-1", ALIVE)]
+    assert _heard(network.world) == [("world/alive/robot-1", ALIVE)]
     robot.__exit__(None, None, None)
-    assert _heard(house.world) == [("world/alive/robot-1", GONE)]
+    assert _heard(network.world) == [("world/alive/robot-1", GONE)]
 
 
-def test_a_process_is_briefed_for_itself_only(house: House) -> None:
-    house.world.answer("config/*", lambda key: key.encode())
+def test_a_process_is_briefed_for_itself_only(network: Network) -> None:
+    network.world.answer("config/*", lambda key: key.encode())
     time.sleep(0.2)
-    assert house.clients["robot-1"].ask(topics.config("robot-1"), 2.0) == b"config/robot-1"
-    assert house.clients["robot-1"].ask(topics.config("robot-2"), 1.0) is None
+    assert network.clients["robot-1"].ask(topics.config("robot-1"), 2.0) == b"config/robot-1"
+    assert network.clients["robot-1"].ask(topics.config("robot-2"), 1.0) is None
 
 
-def test_a_wrong_password_gets_nobody_in(house: House) -> None:
+def test_a_wrong_password_gets_nobody_in(network: Network) -> None:
     with pytest.raises(MissionError, match="no bus at"):
-        open_client("m", house.endpoint, "robot-1", "guess", timeout_ms=1000)
+        open_client("m", network.endpoint, "robot-1", "guess", timeout_ms=1000)
 
 
-def test_what_a_robots_link_cannot_carry_is_refused(house: House) -> None:
-    put = house.clients["robot-1"].publisher("from/robot-1/out")
+def test_what_a_robots_link_cannot_carry_is_refused(network: Network) -> None:
+    put = network.clients["robot-1"].publisher("from/robot-1/out")
     longest = bytes(ROBOT_LINK_BYTES)
     put(longest)
-    assert _heard(house.world) == [("robot-1/out", longest)]
+    assert _heard(network.world) == [("robot-1/out", longest)]
     with pytest.raises(MissionError, match=r"from/robot-1/out: a message of 48001 bytes"):
         put(bytes(ROBOT_LINK_BYTES + 1))
 
 
-def test_other_links_carry_messages_of_any_length(house: House) -> None:
+def test_other_links_carry_messages_of_any_length(network: Network) -> None:
     ticks, carried = bytes(3_000_000), bytes(500_000)
-    house.world.publisher("to/recorder/ticks")(ticks)
-    house.clients["radio"].publisher("from/radio/carried")(carried)
-    assert _heard(house.clients["recorder"]) == [("ticks", ticks)]
-    assert _heard(house.world) == [("radio/carried", carried)]
+    network.world.publisher("to/recorder/ticks")(ticks)
+    network.clients["radio"].publisher("from/radio/carried")(carried)
+    assert _heard(network.clients["recorder"]) == [("ticks", ticks)]
+    assert _heard(network.world) == [("radio/carried", carried)]
 
 
 def test_no_thread_outlives_its_session(

@@ -164,8 +164,8 @@ def test_the_last_words_of_a_process_are_told_and_kept(tmp_path: Path) -> None:
 
 def test_what_the_world_finds_wrong_is_one_line_and_exit_status_2(tmp_path: Path) -> None:
     mission = Mission(tmp_path, "start.x=20", "start.y=26")
-    told, said = mission.child.communicate(timeout=DEADLINE_S)
+    printed, said = mission.child.communicate(timeout=DEADLINE_S)
     assert mission.child.returncode == 2
-    assert told == ""
+    assert printed == ""
     assert len(said.strip().splitlines()) == 1
     assert "start" in said

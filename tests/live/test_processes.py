@@ -3,6 +3,7 @@
 Every mission here ends by itself, and every log that it leaves is re-executed.
 """
 
+import json
 import os
 import signal
 from collections.abc import Iterator
@@ -52,6 +53,7 @@ def test_two_missions_side_by_side_do_not_disturb_each_other(tmp_path: Path) -> 
         folder.mkdir()
     running = [Mission(folder, "clock.limit_s=10") for folder in folders]
     digests = {one.finish()["digest"] for one in running}
+    assert [replay(LogFile(one.out / "mission.mcap")).divergences for one in running] == [0, 0]
     assert digests == {log_of(field(tmp_path, "clock.limit_s=10"), tmp_path / "inline.mcap")}
 
 
@@ -62,6 +64,7 @@ def test_a_killed_launcher_leaves_no_process_behind(mission: Mission) -> None:
     os.kill(children["robot_agent 4"], signal.SIGSTOP)
     mission.child.kill()
     assert gone(list(children.values()))
+    assert replay(LogFile(mission.out / "mission.mcap")).divergences == 0
 
 
 def test_ctrl_c_finishes_the_log_and_exits_130(mission: Mission) -> None:
@@ -76,3 +79,6 @@ def test_ctrl_c_finishes_the_log_and_exits_130(mission: Mission) -> None:
     assert not log.torn
     assert log.summary is not None
     assert log.summary["reason"] == "stopped by the operator"
+    assert replay(log).divergences == 0
+    written = json.loads((mission.out / "summary.json").read_text())
+    assert (written["reason"], written["digest"]) == (log.summary["reason"], digest(log))

@@ -34,12 +34,12 @@ def _words_of(folder: Path, number: int) -> list[str]:
     scenario.write_text(TINY.format(robots=1 + number % 2, limit_s=0.05 * (1 + number % 8)))
     record = "--record" if number % 4 == 0 else "--no-record"
     command = [sys.executable, "-m", "onehop", "run", str(scenario), "--no-view", record]
-    told = subprocess.run(
+    result = subprocess.run(
         [*command, "--out", str(out)], capture_output=True, text=True, timeout=60.0, check=False
     )
-    assert told.returncode == 1, told.stderr  # the time is up
-    assert "digest      none" not in told.stdout
-    words = [line for line in told.stderr.splitlines() if not line.startswith("tiny ")]
+    assert result.returncode == 1, result.stderr  # the time is up
+    assert "digest      none" not in result.stdout
+    words = [line for line in result.stderr.splitlines() if not line.startswith("tiny ")]
     for file in (out / "stderr").glob("*"):
         words += [f"{file.name}: {line}" for line in file.read_text().splitlines()]
     return words

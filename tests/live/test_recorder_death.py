@@ -29,11 +29,11 @@ def test_a_killed_recorder_loses_five_ticks_at_most(number: int, tmp_path: Path)
     os.kill(mission.children()["onehop.recorder"], signal.SIGKILL)
     summary = mission.finish()
     torn, saved = mission.out / "mission.mcap", tmp_path / "saved.mcap"
-    told = salvage(torn, saved)
+    saved_ticks = salvage(torn, saved)
     log = open_log(saved)
     assert not log.torn
     ticks = [tick.tick for tick in LogFile(saved).ticks()]
-    assert ticks == list(range(told.last_tick + 1))
+    assert ticks == list(range(saved_ticks.last_tick + 1))
     assert summary["ticks"] - len(ticks) <= ALLOWED_LOSS
     assert replay(LogFile(saved)).divergences == 0
     print(f"killed after {summary['ticks']} ticks: {summary['ticks'] - len(ticks)} lost")

@@ -1,4 +1,4 @@
-"""The world tick by tick: who is present, what is offered, what faults do, what stays the same."""
+"""The world tick by tick: who is present, what robots want sent, what faults do, what stays the same."""
 
 import math
 
@@ -102,7 +102,7 @@ def test_a_robot_without_an_action_stands_still_and_offers_nothing() -> None:
     ground.advance({2: action(1.0)})
     truth = ground.truth()
     assert truth.present[0].twist == Twist(0.0, 0.0)
-    assert [offer.robot for offer in truth.transmit_requests] == [2]
+    assert [request.robot for request in truth.transmit_requests] == [2]
 
 
 def test_observations_are_what_truth_says_and_scans_cannot_be_written() -> None:
@@ -150,7 +150,7 @@ def test_a_fenced_robot_departs_once_and_its_last_words_are_not_offered() -> Non
     ground.advance({1: action(), 2: action(3.0), 3: action()})
     truth = ground.truth()
     assert truth.departures == (Departure(2, "its process died"),)
-    assert [offer.robot for offer in truth.transmit_requests] == [1, 3]
+    assert [request.robot for request in truth.transmit_requests] == [1, 3]
     assert list(ground.observe()) == [1, 3]
     ground.advance({})
     assert ground.truth().departures == ()
@@ -188,7 +188,7 @@ def test_what_a_robot_offered_before_it_was_restarted_is_lost() -> None:
     ground.fence(2, "died")
     ground.admit(2)
     truth = ground.truth()
-    assert [offer.robot for offer in truth.transmit_requests] == [1]
+    assert [request.robot for request in truth.transmit_requests] == [1]
     assert (truth.present[1].robot, truth.present[1].twist) == (2, Twist(0.0, 0.0))
 
 
