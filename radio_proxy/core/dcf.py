@@ -192,9 +192,10 @@ class Dcf:
     def _end(self, emission: Emission, now: int, responder: StationIndex = EVERYONE) -> None:
         """An emission ends. responder: who transmits the next frame of the exchange after a SIFS."""
         self.medium.end(emission)
-        none = responder == EVERYONE
-        row = None if none else self.medium.propagation.mean_snr_row(responder)
-        self._contention.on_idle(now, row)
+        if responder == EVERYONE:
+            self._contention.on_idle(now)
+        else:
+            self._contention.on_idle(now, self.medium.propagation.mean_snr_row(responder))
 
     def _on_broadcast_end(self, exchange: Exchange, now: int) -> None:
         sender = exchange.sender

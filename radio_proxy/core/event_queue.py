@@ -43,13 +43,13 @@ class EventQueue:
     def run(self, until: int) -> None:
         """Everything that happens up to and including `until` [ns]."""
         self.horizon = until
-        events, access = self._events, self._access
+        events, access, on_access = self._events, self._access, self._on_access
         while True:
             time_ns = events[0][0] if events else NEVER
             if access.next_access < time_ns:
                 if access.next_access > until:
                     return
-                self._on_access(access.next_access)
+                on_access(access.next_access)
             else:
                 if time_ns > until:
                     return

@@ -1,5 +1,6 @@
-"""Between routing and DCF: packets of robots become frames of stations, and what becomes of a frame is
-reported to the routing protocols of both ends.
+"""Between routing and DCF: packets of robots become frames of stations.
+
+What becomes of a frame is reported to the routing protocols of both of its ends.
 
 What routing costs is counted as by J. Broch et al., "A performance comparison of multi-hop wireless ad
 hoc network routing protocols", MobiCom 1998, 5.2 and 5.3: every hop of a routing packet once, IP header

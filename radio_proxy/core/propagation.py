@@ -44,7 +44,7 @@ class Propagation:
 
     def __init__(self, budget: LinkBudget, robots: tuple[RobotId, ...], walls: tuple[Wall, ...]) -> None:
         self.budget = budget
-        self._index = {robot: StationIndex(i) for i, robot in enumerate(robots)}
+        self._index: dict[int, StationIndex] = {r: StationIndex(i) for i, r in enumerate(robots)}
         self._count = len(robots)
         self._walls = walls if budget.wall_loss_db else ()
         self._positions: dict[StationIndex, tuple[float, float]] = {}
@@ -130,7 +130,7 @@ class Propagation:
         self._positions = {}
         reach = self.budget.reach
         for presence in self._present:
-            index = self._index[RobotId(presence.robot)]
+            index = self._index[presence.robot]
             x, y = presence.pose.x, presence.pose.y
             self._positions[index] = (x, y)
             cell = math.floor(x / reach), math.floor(y / reach)
@@ -176,8 +176,8 @@ class Propagation:
     def _apply_cuts(self, sender: StationIndex, row: list[float]) -> None:
         for cut in self._cuts:
             for near, far in ((cut.side_a, cut.side_b), (cut.side_b, cut.side_a)):
-                if sender in (self._index.get(RobotId(robot)) for robot in near):
+                if sender in (self._index.get(robot) for robot in near):
                     for robot in far:
-                        index = self._index.get(RobotId(robot), sender)
+                        index = self._index.get(robot, sender)
                         if index != sender:
                             row[index] = SILENT_DB

@@ -42,7 +42,7 @@ def test_fhss_cell_is_within_3_percent_of_bianchi(
     stations: int, window: int, stages: int, rts_cts: bool
 ) -> None:
     timing = fhss(window, stages)
-    expected = bianchi_normalized(stations, timing, 1023, rts_cts, propagation=1000)
+    expected = bianchi_normalized(stations, timing, 1023, rts_cts, propagation_delay=1000)
     measured = cell_throughput(stations, timing, 1023, rts_cts, 20.0)
     assert measured == pytest.approx(expected, rel=0.03)
 
