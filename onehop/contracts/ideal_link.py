@@ -73,7 +73,7 @@ THESIS_THRESHOLD_BPS = 0.5333e6
 
 
 def threshold_bps(rate_mbps: float, msdu_bytes: int, propagation_us: float = 0.0) -> float:
-    """The same share of the ideal throughput at any rate and size, 0.684 [bit/s] (radio.md)."""
+    """The same share of the ideal throughput at any rate and size, 0.684 [bit/s]."""
     share = THESIS_THRESHOLD_BPS / ideal_throughput_bps(1.0, 800)
     ideal = ideal_throughput_bps(rate_mbps, msdu_bytes, propagation_us=propagation_us)
     return share * ideal

@@ -85,7 +85,7 @@ def percept(observation: Observation, inbox: Inbox) -> Percept:
 
 
 class Transmission(Value, frozen=True):
-    """One message handed to the network card; destination is a robot id or BROADCAST.
+    """One message handed to the NIC; destination is a robot id or BROADCAST.
 
     msdu_bytes: size that it takes on the air [B], at least len(payload).
     """
@@ -105,7 +105,7 @@ class Note(Value, frozen=True):
 class Action(Wire, frozen=True):
     """Everything that robot i does at tick k (key out/<i>).
 
-    speed [m/s], remaining_distance [m]: what the network card may know (routing, thesis eq. p_r).
+    speed [m/s], remaining_distance [m]: what the NIC may know (routing, thesis eq. p_r).
     """
 
     tick: int
@@ -129,7 +129,7 @@ class Presence(Value, frozen=True):
 
 
 class TransmitRequest(Value, frozen=True):
-    """What one present robot handed to its network card in the last tick."""
+    """What one present robot handed to its NIC in the last tick."""
 
     robot: int
     speed: float

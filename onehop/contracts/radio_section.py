@@ -23,7 +23,7 @@ class RadioSection:
     mac_header_bytes: 34 in the thesis's sums, 28 with three addresses.
     retry_limit: attempts of one frame. cts_timeout_us: from the end of a frame until its answer is
         given up (SIFS + slot + preamble; 334 in the standard of 1999).
-    queue_frames: bound of a card's queue; a frame that finds it full is dropped.
+    queue_frames: bound of the queue of a NIC; a frame that finds it full is dropped.
     routing: "direct" (one hop only), "mrsr" (on DSR) or "mrdv" (on AODV).
     gamma_distance: remaining distance per unit of gamma in p_r = min(1, (1/v)^gamma) [m].
     """

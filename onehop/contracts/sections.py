@@ -135,7 +135,7 @@ class TeamSection:
     leader_timeout: silence until a follower gives up its leader [s]. setup_timeout [s].
     next_msdu_bytes: size of Next on the air (thesis 3.7).
 
-    profile: "thesis" (its rules alone) or "team" (epochs, yielding, joining; team.md).
+    profile: "thesis" (its rules alone) or "team" (epochs, yielding, joining; docs/modes.md).
     orphan: what a robot of profile "thesis" does that hears nobody any more: "stop", or go "solo"
     (thesis 3.8.1). successor_timeout: silence of an elected leader until it is given up too [s].
     narrow_spacing: distance between neighbours in the column of a narrow passage [m].

@@ -1,4 +1,4 @@
-"""The summary of a mission: what `onehop run` prints and summary.json holds (cli design, `run`).
+"""The summary of a mission: what `onehop run` prints and summary.json holds.
 
 One process of a mission writes the file: the launcher; without one the recorder; inline the run itself.
 """

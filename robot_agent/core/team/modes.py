@@ -1,4 +1,4 @@
-"""The part that a robot plays in its team, as one table of transitions (thesis 3.3, 4.3; team.md).
+"""The part that a robot plays in its team, as one table of transitions (thesis 3.3, 4.3).
 
 Theory of operation. A robot is always in exactly one mode. What happens to it is told as an event, and
 the table below says which mode follows; an event that the table does not give for a mode is a bug of

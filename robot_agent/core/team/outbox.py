@@ -1,4 +1,4 @@
-"""What a robot has to say in one tick: messages for its network card, notes for people."""
+"""What a robot has to say in one tick: messages for its NIC, notes for people."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ class Outbox:
         self._notes: list[Note] = []
 
     def send(self, robot: int, message: TeamMessage, msdu_bytes: int) -> None:
-        """Hand a message for one robot, or for everyone, to the network card."""
+        """Hand a message for one robot, or for everyone, to the NIC."""
         self.send_to((robot,), message, msdu_bytes)
 
     def send_to(self, robots: Sequence[int], message: TeamMessage, msdu_bytes: int) -> None:

@@ -1,4 +1,4 @@
-"""What differs between the profiles: the thesis's rules alone, and those of a team under loss (team.md).
+"""What differs between the profiles: the thesis's rules alone, and those of a team under loss (docs/modes.md).
 
 Pure answers to the protocol's questions; the protocol is the same for both.
 """
@@ -89,7 +89,7 @@ class ThesisRules:
 class TeamRules:
     """Epochs, yielding, merging and joining.
 
-    Differs from team.md: a roster without the leader that this robot hears is not obeyed, whatever its
+    A roster without the leader that this robot hears is not obeyed, whatever its
     epoch, because one robot that was cut off for long would otherwise tear the team apart. The two
     leaders merge as soon as they hear each other.
     """

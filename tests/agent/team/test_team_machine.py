@@ -1,4 +1,4 @@
-"""The team under an adversarial network, as a Hypothesis state machine (team.md, what must hold).
+"""The team under an adversarial network, as a Hypothesis state machine (docs/modes.md).
 
 The adversary drops, delays, duplicates, reorders, cuts and heals, kills, restarts and pauses, and puts
 in payloads that no robot sent. After every step the invariants of a tick hold; whenever the network has
