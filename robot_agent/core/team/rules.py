@@ -1,4 +1,4 @@
-"""What differs between the profiles: the thesis's rules alone, and those of a team under loss (docs/modes.md).
+"""What differs between the profiles: the thesis alone, and a team under loss (docs/modes.md).
 
 Pure answers to the protocol's questions; the protocol is the same for both.
 """
