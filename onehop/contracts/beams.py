@@ -35,8 +35,8 @@ class Beams:
 
     def near(self, marked: BoolArray, angle: float) -> BoolArray:
         """Which beams have a marked one within an angle [rad] to either side, (n_beams,)."""
-        reach = self.spanned(angle)
-        count = np.zeros(len(marked) + 2 * reach + 1, dtype=np.intp)
-        np.cumsum(marked, out=count[reach + 1 : reach + 1 + len(marked)])
-        count[reach + 1 + len(marked) :] = count[reach + len(marked)]
-        return np.asarray(count[2 * reach + 1 :] > count[: len(marked)])
+        reach, n = self.spanned(angle), len(marked)
+        padded = np.zeros(n + 2 * reach + 1, dtype=np.intp)
+        padded[reach + 1 : reach + 1 + n] = marked
+        count = padded.cumsum()
+        return np.asarray(count[2 * reach + 1 :] > count[:n])

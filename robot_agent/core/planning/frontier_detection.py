@@ -66,7 +66,7 @@ def border(view: View, width: float, goal: FloatArray, record: float) -> Border:
     sight, beams = view.sight, view.beams
     heading = beams.angles + view.pose.heading
     ends = view.origin + view.directions * sight[:, None]
-    border_beams = view.outline_ends()
+    border_beams = view.outline_ends.copy()
     some = slice(None, None, beams.spanned(OPEN_SPACING))
     closer = elementary.lengths(*(ends[some] - goal).T) < record
     border_beams[some] |= ~view.solid[some] & closer

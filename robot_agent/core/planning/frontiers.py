@@ -20,7 +20,7 @@ from robot_agent.core.planning.frontier_detection import (
     border,
     candidates,
 )
-from robot_agent.core.planning.memory import CLOSED, FRONTIER, NOTHING, PLACE, WayPoints
+from robot_agent.core.planning.memory import CLOSED, FRONTIER, NOTHING, PLACE, Indices, WayPoints
 from robot_agent.core.planning.perception import LocalMap
 from robot_agent.core.planning.view import View
 
@@ -155,9 +155,11 @@ class Frontiers:
         near = elementary.lengths(*(points - view.origin).T) < PASSED_BY * self.spacing
         away = (elementary.cosines(turn) < LOOKS_AWAY) & near
         done = frontiers[~still & ~away].tolist()
+        from_robot = elementary.lengths(*(found.points[found.indices] - view.origin).T)
+        ahead = found.indices[from_robot >= MOVED_FROM_ROBOT * self.spacing]
         settled: dict[int, int] = {}
         for number in done + [n for n in self._entered(view.pose) if n not in done]:
-            point = self._next_candidate(view, number, found)
+            point = self._next_point(number, ahead, found.points)
             if point == NOTHING:
                 memory.close(number)
             else:
@@ -173,21 +175,22 @@ class Frontiers:
         ahead = elementary.cosines(self.gaze[frontiers] - pose.heading) > LOOKS_OUT
         return [int(n) for n in frontiers[(distance < ENTERED * self.spacing) & ahead]]
 
-    def _next_candidate(self, view: View, number: int, found: Candidates) -> int:
-        """Where a frontier goes on to, for the border recedes as the robot comes closer; or NOTHING."""
-        if not len(found.indices) or self._moves[number] >= MOST_MOVES:
+    def _next_point(self, number: int, ahead: Indices, points: FloatArray) -> int:
+        """Where a frontier goes on to, for the border recedes as the robot comes closer; or NOTHING.
+
+        ahead: candidates that the robot does not stand at. points: of the road map, (n, 2) [m].
+        """
+        if not len(ahead) or self._moves[number] >= MOST_MOVES:
             return NOTHING
-        points = found.points[found.indices]
-        distance = elementary.lengths(*(points - self.memory.xy[number]).T)
-        from_robot = elementary.lengths(*(points - view.origin).T)
-        distance[from_robot < MOVED_FROM_ROBOT * self.spacing] = np.inf
+        distance = elementary.lengths(*(points[ahead] - self.memory.xy[number]).T)
         nearest = int(np.argmin(distance))
         if distance[nearest] > MOVED_UP_TO * self.spacing:
             return NOTHING
         others = self.memory.of_kind(FRONTIER)
         others = others[others != number]
-        apart = squared_distances(points[nearest][None], self.memory.xy[others]).min(initial=np.inf)
-        return int(found.indices[nearest]) if apart >= self.spacing * self.spacing else NOTHING
+        point = int(ahead[nearest])
+        apart2 = squared_distances(points[point][None], self.memory.xy[others]).min(initial=np.inf)
+        return point if apart2 >= self.spacing * self.spacing else NOTHING
 
     def _draw_closer(self, found: Candidates, record: float) -> dict[int, int]:
         """The best place ahead takes the place of a nearby frontier that is farther from the goal.

@@ -57,8 +57,7 @@ def outline_end_samples(view: View, margin: float) -> FloatArray:
 
     margin: room to leave to the end of the range [m].
     """
-    ends = view.outline_ends()
-    far = np.flatnonzero(ends)[:: view.beams.spanned(END_SPACING)]
+    far = np.flatnonzero(view.outline_ends)[:: view.beams.spanned(END_SPACING)]
     return view.origin + view.directions[far] * (view.beams.range - margin)
 
 

@@ -5,6 +5,7 @@ ago and still lie beside or behind the robot (`RecentObstacles`).
 """
 
 import math
+from functools import cached_property
 
 import numpy as np
 
@@ -129,6 +130,7 @@ class View:
         keeps_wide = (distance2 >= self.allowance(wide)).all(axis=1)
         return np.asarray(keeps_tight), np.asarray(keeps_wide)
 
+    @cached_property
     def outline_ends(self) -> BoolArray:
         """Which beams go free past an obstacle whose outline leaves the laser's range, (n_beams,)."""
         return np.asarray(~self.solid & self.beams.near(self.solid, OUTLINE_END))
