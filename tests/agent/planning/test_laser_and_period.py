@@ -33,6 +33,7 @@ FIELDS: dict[str, tuple[Callable[[], Mission], float, float]] = {
     "pocket": (lambda: alone(field(THREE_WALLS), (20, 50, 0), (90, 50)), 117.7, 1.15),
     "pillars": (pillars, 4.35, 1.15),
     "map1": (lambda: alone(study_map("map1"), (10, 10, 45), (90, 90)), 150.1, 1.15),
+    "map2": (lambda: alone(study_map("map2"), (10, 10, 45), (90, 90)), 150.7, 1.15),
     "map3": (lambda: alone(study_map("map3"), (10, 10, 45), (90, 90)), 164.4, 1.15),
     "open, original": (lambda: alone(field(size=60.0), (5, 5, 45), (45, 45), "original"), 56.8, 1.05),
     "block, modified": (
