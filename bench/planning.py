@@ -46,10 +46,10 @@ def local_plan(rounds: int) -> dict[str, float]:
     """CPU time of view, 200 samples, road map and A* [ms]."""
     view, body = scene()
     scan = np.where(view.solid, view.sight, np.inf).astype(np.float32)
-    fan, random, took = Beams(body), generator(1, "bench"), []
+    beams, random, took = Beams(body), generator(1, "bench"), []
     for _ in range(rounds):
         began = time.process_time()
-        look = View(fan, view.pose, scan, 0.05)
+        look = View(beams, view.pose, scan, 0.05)
         samples = sample_fan(look, random.random((200, 2)), 0.0, math.pi / 2, 0.52)
         roadmap = RoadMap(look, samples, NO_POINTS, 0.52, 0.7)
         left = np.hypot(*(roadmap.points - (25.0, 14.0)).T)
@@ -69,9 +69,9 @@ def ompl_prm(rounds: int) -> dict[str, dict[str, float]] | str:
     except ImportError:
         return "not installed"
     view, _ = scene()
-    obstacles, fan = view.obstacles, view.fan
-    left = float(fan.angles[0])
-    step = float(fan.angles[1]) - left
+    obstacles, beams = view.obstacles, view.beams
+    left = float(beams.angles[0])
+    step = float(beams.angles[1]) - left
 
     checking = 0.0
 
@@ -86,7 +86,7 @@ def ompl_prm(rounds: int) -> dict[str, dict[str, float]] | str:
         x, y = state[0], state[1]
         dx, dy = x - 10.0, y - 11.0
         beam = round((math.atan2(dy, dx) - left) / step)
-        if not 0 <= beam <= 180 or math.hypot(dx, dy) > view.sight[beam]:
+        if not 0 <= beam < len(beams.angles) or math.hypot(dx, dy) > view.sight[beam]:
             return False
         return bool(((obstacles[:, 0] - x) ** 2 + (obstacles[:, 1] - y) ** 2).min() >= 0.52**2)
 
@@ -131,12 +131,12 @@ def following(ticks: int) -> dict[str, float]:
     plain, every, pose = [], [], np.array([[5.0, 15.0, 0.0]])
     for _ in range(ticks):
         scan = laser.scans(pose, np.zeros(1, dtype=np.int32))[0]
-        place, before = Pose(*map(float, pose[0])), finder.survey
+        place, before = Pose(*map(float, pose[0])), finder.snapshot
         began = time.perf_counter()
         twist = finder.step(place, scan).twist
         took = (time.perf_counter() - began) * 1e6
         every.append(took)
-        if finder.survey is before:
+        if finder.snapshot is before:
             plain.append(took)
         heading = pose[0, 2] + 0.5 * twist.w * 0.05
         pose[0] += twist.v * 0.05 * math.cos(heading), twist.v * 0.05 * math.sin(heading), twist.w * 0.05

@@ -63,15 +63,15 @@ def scenario_of(place: str, kind: Any, seed: int) -> Scenario:
 
 def run(place: str, kind: str, seed: int) -> Line:
     scenario = scenario_of(place, kind, seed)
-    outcome = run_trial(scenario, load_map(scenario.map, {}))
+    trial = run_trial(scenario, load_map(scenario.map, {}))
     return {
         "place": place,
         "kind": kind,
         "seed": seed,
-        "answer": outcome.progress.value,
-        "seconds": round((len(outcome.path) - 1) * scenario.clock.period_ms / 1e3, 2),
-        "contacts": outcome.contacts,
-        "clearance_m": round(outcome.min_clearance, 4),
+        "answer": trial.outcome.value,
+        "seconds": round((len(trial.path) - 1) * scenario.clock.period_ms / 1e3, 2),
+        "contacts": trial.contacts,
+        "clearance_m": round(trial.min_clearance, 4),
     }
 
 

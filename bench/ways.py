@@ -97,7 +97,7 @@ def drive(scenario: Scenario, walls: WallMap, known: KnownMap, cells: tuple[int,
     return {
         "start": start,
         "goal": goal,
-        "answer": run.progress.value,
+        "answer": run.outcome.value,
         "length_m": round(run.length, 3),
         "rest_m": round(math.dist(run.path[-1][:2], goal), 3),
         "clearance_m": round(run.min_clearance, 4),

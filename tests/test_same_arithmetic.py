@@ -45,12 +45,6 @@ ALLOWED = [
         "with a margin selects the beams that are tested, each by +, -, * and sqrt",
     ),
     (
-        "frontiers",
-        "unseen_rim",
-        "np.convolve(view.solid, np.ones(13), mode='same')",
-        "counts: sums of zeros and ones have no last place to lose, in any order",
-    ),
-    (
         "sampling",
         "edge_samples",
         "np.convolve(view.solid, np.ones(13), mode='same')",

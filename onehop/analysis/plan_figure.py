@@ -15,14 +15,14 @@ _DPI = 110
 
 
 def plan_figure(
-    outcome: Trial, walls: WallMap, goal: tuple[float, float], shortest: FloatArray | None
+    trial: Trial, walls: WallMap, goal: tuple[float, float], shortest: FloatArray | None
 ) -> bytes:
     """The figure as PNG. shortest: (n, 2) way on the known map [m], or None to leave it out."""
     xmin, ymin, xmax, ymax = walls.bounds
     aspect = (ymax - ymin) / (xmax - xmin)
     figure = Figure(figsize=(9.0, min(max(9.0 * aspect, 4.0), 16.0)), layout="constrained")
     axes = figure.add_subplot()
-    _road_maps(axes, outcome)
+    _road_maps(axes, trial)
     axes.add_collection(
         LineCollection(list(walls.segments.reshape(-1, 2, 2)), colors="#222222", linewidths=1.0)
     )
@@ -34,23 +34,21 @@ def plan_figure(
             linewidth=1.2,
             label="shortest on the known map",
         )
-    axes.plot(*outcome.path[:, :2].T, color="#1d4ed8", linewidth=1.6, label="path")
-    _virtual_goals(axes, outcome)
-    axes.plot(*outcome.path[0, :2], marker="^", color="black", linestyle="", label="start")
+    axes.plot(*trial.path[:, :2].T, color="#1d4ed8", linewidth=1.6, label="path")
+    _virtual_goals(axes, trial)
+    axes.plot(*trial.path[0, :2], marker="^", color="black", linestyle="", label="start")
     axes.plot(*goal, marker="s", color="#dc2626", linestyle="", label="goal")
     axes.set(xlim=(xmin, xmax), ylim=(ymin, ymax), aspect="equal", xlabel="x [m]", ylabel="y [m]")
-    axes.set_title(
-        f"{outcome.progress.value}: {outcome.length:.1f} m, {len(outcome.surveys)} planning moments"
-    )
+    axes.set_title(f"{trial.answer}: {trial.length:.1f} m, {len(trial.snapshots)} planning moments")
     axes.legend(loc="upper left", fontsize="small", framealpha=0.9)
     picture = io.BytesIO()
     figure.savefig(picture, format="png", dpi=_DPI, metadata={"Software": None})
     return picture.getvalue()
 
 
-def _road_maps(axes: Axes, outcome: Trial) -> None:
-    edges = [survey.roadmap.edges.reshape(-1, 2, 2) for survey in outcome.surveys]
-    samples = [survey.samples for survey in outcome.surveys]
+def _road_maps(axes: Axes, trial: Trial) -> None:
+    edges = [moment.roadmap.edges.reshape(-1, 2, 2) for moment in trial.snapshots]
+    samples = [moment.samples for moment in trial.snapshots]
     if not edges:
         return
     axes.add_collection(
@@ -59,8 +57,8 @@ def _road_maps(axes: Axes, outcome: Trial) -> None:
     axes.plot(*np.concatenate(samples).T, ",", color="#9ca3af", alpha=0.6, label="fan samples")
 
 
-def _virtual_goals(axes: Axes, outcome: Trial) -> None:
-    ends = [(survey.way[-1], survey.backtrack) for survey in outcome.surveys if len(survey.way)]
+def _virtual_goals(axes: Axes, trial: Trial) -> None:
+    ends = [(moment.way[-1], moment.backtrack) for moment in trial.snapshots if len(moment.way)]
     for back, colour, label in ((False, "#f59e0b", "virtual goal"), (True, "#a21caf", "step back")):
         points = np.array([end for end, backtrack in ends if backtrack is back]).reshape(-1, 2)
         axes.plot(*points.T, "o", markersize=3, color=colour, label=label)

@@ -71,7 +71,7 @@ def _shortest(
 
 
 def _print(summary: dict[str, Any], run: Trial, figure: Path | None) -> None:
-    print(f"answer         {run.progress.value}")
+    print(f"answer         {run.answer}")
     print(f"path           {summary['path_length_m']:.1f} m in {summary['steps']} ticks")
     shortest = summary["shortest_m"]
     if shortest:

@@ -8,7 +8,7 @@ import math
 import numpy as np
 
 from onehop.contracts import elementary
-from onehop.contracts.arrays import FloatArray
+from onehop.contracts.arrays import BoolArray, FloatArray
 from onehop.contracts.sections import RobotSection
 
 
@@ -28,3 +28,15 @@ class Beams:
         self.directions: FloatArray = np.column_stack(
             (elementary.cosines(self.angles), elementary.sines(self.angles))
         )
+
+    def spanned(self, angle: float) -> int:
+        """How many spacings make up an angle [rad], to the nearest whole one and at least 1."""
+        return max(1, round(angle / self.spacing))
+
+    def near(self, marked: BoolArray, angle: float) -> BoolArray:
+        """Which beams have a marked one within an angle [rad] to either side, (n_beams,)."""
+        reach, n = self.spanned(angle), len(marked)
+        padded = np.zeros(n + 2 * reach + 1, dtype=np.intp)
+        padded[reach + 1 : reach + 1 + n] = marked
+        count = padded.cumsum()
+        return np.asarray(count[2 * reach + 1 :] > count[:n])

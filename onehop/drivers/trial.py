@@ -7,44 +7,72 @@ the path, and each planning moment with its road map.
 import math
 import time
 from dataclasses import dataclass, replace
+from enum import StrEnum
 
 import numpy as np
 
 from onehop.contracts import elementary
-from onehop.contracts.arrays import FloatArray
+from onehop.contracts.arrays import FloatArray, Ranges
 from onehop.contracts.briefings import robot_briefing
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Note
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario
 from onehop.maps.walls import WallMap, segment_distances
-from robot_agent.core.planning import PlannerStatus, make_pathfinder
-from robot_agent.core.planning.snapshot import PlanningSnapshot
+from robot_agent.core.planning import Guidance, PlannerStatus, make_pathfinder
+from robot_agent.core.planning.snapshot import ObservablePathfinder, PlanningSnapshot
 from world_server.core.laser import Laser
 from world_server.core.motion import Motion
 from world_server.core.placement import start_poses
 
+LOOKING = np.zeros(1, dtype=np.int32)
+"""The rows of the poses that look: the only one."""
+
 PIECE = 64
 """Poses of a path whose clearance is measured at once."""
+
+
+class TrialOutcome(StrEnum):
+    """How a trial ended: with the pathfinder's answer, or before it had one."""
+
+    ARRIVED = "arrived"
+    NO_WAY = "no way to the goal"
+    TIME_LIMIT = "time limit"
+
+
+OUTCOMES = {
+    PlannerStatus.ARRIVED: TrialOutcome.ARRIVED,
+    PlannerStatus.NO_WAY: TrialOutcome.NO_WAY,
+    PlannerStatus.DRIVING: TrialOutcome.TIME_LIMIT,
+}
+"""What a trial's outcome is by the pathfinder's last word."""
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
     """How one leader fared.
 
-    progress: the pathfinder's last word, DRIVING when the time limit came first. path: (ticks + 1, 3)
-    poses [m, m, rad]. surveys: one for each planning moment. plan_ms: (replans,) wall time of those
-    ticks; follow_us: (rest,) of the others. contacts: ticks in which the robot touched a wall.
+    limit_s: simulated time that it had [s]. path: (ticks + 1, 3) poses [m, m, rad]. snapshots: one for
+    each planning moment. plan_ms: (replans,) wall time of those ticks; follow_us: (rest,) of the others.
+    contacts: ticks in which the robot touched a wall.
     """
 
-    progress: PlannerStatus
+    outcome: TrialOutcome
+    limit_s: float
     path: FloatArray
-    surveys: tuple[PlanningSnapshot, ...]
+    snapshots: tuple[PlanningSnapshot, ...]
     notes: tuple[tuple[int, Note], ...]
     plan_ms: FloatArray
     follow_us: FloatArray
     contacts: int
     min_clearance: float
+
+    @property
+    def answer(self) -> str:
+        """The outcome for people; of the time limit, with where it is set."""
+        if self.outcome is TrialOutcome.TIME_LIMIT:
+            return f"time limit of {self.limit_s:g} s (clock.limit_s)"
+        return self.outcome.value
 
     @property
     def length(self) -> float:
@@ -54,12 +82,12 @@ class Trial:
     def summary(self) -> dict[str, bool | int | float | str]:
         """The keys that `onehop plan --json` promises, without shortest_m."""
         return {
-            "reached": self.progress is PlannerStatus.ARRIVED,
-            "answer": self.progress.value,
+            "reached": self.outcome is TrialOutcome.ARRIVED,
+            "answer": self.answer,
             "steps": len(self.path) - 1,
             "path_length_m": round(self.length, 3),
-            "replans": len(self.surveys),
-            "backtracks": sum(survey.backtrack for survey in self.surveys),
+            "replans": len(self.snapshots),
+            "backtracks": sum(snapshot.backtrack for snapshot in self.snapshots),
             "min_clearance_m": round(self.min_clearance, 4),
             "contacts": self.contacts,
             "plan_ms_p50": _percentile(self.plan_ms, 50),
@@ -79,43 +107,61 @@ def run_trial(scenario: Scenario, walls: WallMap) -> Trial:
     poses = start_poses(scenario, walls)
     laser = Laser(walls, scenario.robot)
     motion = Motion(walls, scenario.robot, scenario.clock.period_ns)
-    briefing = robot_briefing(scenario, robot, 0)
-    first = Pose(*map(float, poses[0]))
-    finder = make_pathfinder(briefing, first, generator(scenario.seed, f"robot/{robot}/0"))
-    looking = np.zeros(1, dtype=np.int32)
-    path, surveys, notes = [poses[0].copy()], [], []
-    plan_s: list[float] = []
-    follow_s: list[float] = []
-    contacts, seen, progress = 0, None, PlannerStatus.DRIVING
+    rng = generator(scenario.seed, f"robot/{robot}/0")
+    finder = make_pathfinder(robot_briefing(scenario, robot, 0), _pose(poses), rng)
+    record, contacts, path = _Record(finder), 0, [poses[0].copy()]
     for tick in range(int(scenario.clock.limit_s * 1000 / scenario.clock.period_ms)):
-        scan = laser.scans(poses, looking)[0]
-        began = time.perf_counter()
-        guidance = finder.step(Pose(*map(float, poses[0])), scan)
-        took = time.perf_counter() - began
-        notes += [(tick, note) for note in guidance.notes]
-        if finder.survey is not None and finder.survey is not seen:
-            seen = finder.survey
-            surveys.append(seen)
-            plan_s.append(took)
-        else:
-            follow_s.append(took)
-        progress = guidance.progress
-        if progress is not PlannerStatus.DRIVING:
+        guidance = record.step(tick, _pose(poses), laser.scans(poses, LOOKING)[0])
+        if guidance.progress is not PlannerStatus.DRIVING:
             break
         touched = motion.advance(poses, np.array([[guidance.twist.v, guidance.twist.w]]))
         contacts += int(touched[0] >= -1)
         path.append(poses[0].copy())
     track = np.array(path)
     return Trial(
-        progress=progress,
+        outcome=OUTCOMES[record.status],
+        limit_s=scenario.clock.limit_s,
         path=track,
-        surveys=tuple(surveys),
-        notes=tuple(notes),
-        plan_ms=np.array(plan_s) * 1e3,
-        follow_us=np.array(follow_s) * 1e6,
+        snapshots=tuple(record.snapshots),
+        notes=tuple(record.notes),
+        plan_ms=np.array(record.plan_s) * 1e3,
+        follow_us=np.array(record.follow_s) * 1e6,
         contacts=contacts,
         min_clearance=_least_clearance(walls, track[:, :2]),
     )
+
+
+class _Record:
+    """A pathfinder, and what is kept of its ticks."""
+
+    def __init__(self, finder: ObservablePathfinder) -> None:
+        self.finder = finder
+        self.status = PlannerStatus.DRIVING
+        self.snapshots: list[PlanningSnapshot] = []
+        self.notes: list[tuple[int, Note]] = []
+        self.plan_s: list[float] = []
+        self.follow_s: list[float] = []
+
+    def step(self, tick: int, pose: Pose, scan: Ranges) -> Guidance:
+        """The pathfinder's step, timed."""
+        before = self.finder.snapshot
+        began = time.perf_counter()
+        guidance = self.finder.step(pose, scan)
+        took = time.perf_counter() - began
+        self.status = guidance.progress
+        self.notes += [(tick, note) for note in guidance.notes]
+        after = self.finder.snapshot
+        if after is not None and after is not before:
+            self.snapshots.append(after)
+            self.plan_s.append(took)
+        else:
+            self.follow_s.append(took)
+        return guidance
+
+
+def _pose(poses: FloatArray) -> Pose:
+    x, y, heading = poses[0].tolist()
+    return Pose(x, y, heading)
 
 
 def _least_clearance(walls: WallMap, way: FloatArray) -> float:

@@ -8,6 +8,10 @@ from onehop.contracts.arrays import Ranges
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Note
 
+ARRIVED_WITHIN = 0.6
+"""Distance from the goal at which a leader has arrived, in the goal's tolerances: below 1, so that
+nothing that is measured afterwards finds it outside."""
+
 
 class PlannerStatus(StrEnum):
     """How far a pathfinder is."""
@@ -19,7 +23,7 @@ class PlannerStatus(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Guidance:
-    """One tick of way-finding.
+    """One tick of way-finding. progress: how far the pathfinder is.
 
     remaining: estimate of the distance still to drive [m]. passage: free width of the passage that the
     robot is in or about to enter, seen by the laser to both sides [m]; inf in the open.
@@ -35,7 +39,7 @@ class Guidance:
 
 
 class Pathfinder(Protocol):
-    """A way-finding method. One instance serves one leadership; a new leader starts a new one."""
+    """A way-finding method. One instance serves one leadership term; a new leader starts a new one."""
 
     def step(self, pose: Pose, scan: Ranges) -> Guidance:
         """Decide the twist for this tick."""

@@ -16,11 +16,11 @@ from onehop.contracts.arrays import BoolArray, FloatArray
 from robot_agent.core.planning.view import View
 
 FRONT_HALF = math.radians(30.0)
-"""Half opening of the front third [rad]."""
+"""Half of the front third of the view [rad]."""
 
-
-WALL_BEAMS = 8
-"""Beams to each side of the nearest one that show the direction of a wall."""
+WALL_HALF = math.radians(8.0)
+"""Angle to each side of the nearest hit within which hits show the direction of a wall [rad]: 0.4 m of
+it at 3 m, enough for a direction and too short to reach around a corner."""
 
 
 class Obstacle(Enum):
@@ -37,7 +37,7 @@ class Obstacle(Enum):
 
 def classify(view: View, within: float) -> Obstacle:
     """The case of this view, of hits nearer than `within` [m]."""
-    angles = view.fan.angles
+    angles = view.beams.angles
     close = view.solid & (view.sight < within)
     if not close.any():
         return Obstacle.NONE
@@ -72,11 +72,12 @@ def fan_direction(view: View, obstacle: Obstacle, within: float) -> float:
     """Direction of the limited fan, map frame [rad], for an obstacle beside the robot."""
     if obstacle is Obstacle.BOTH:
         return view.pose.heading + _middle(view, within)
-    side = view.fan.angles > 0.0 if obstacle is Obstacle.LEFT else view.fan.angles < 0.0
+    side = view.beams.angles > 0.0 if obstacle is Obstacle.LEFT else view.beams.angles < 0.0
     close = side & view.solid & (view.sight < within)
     nearest = _nearest(view, close)
-    beams = np.flatnonzero(close[: nearest + WALL_BEAMS + 1])
-    beams = beams[beams >= nearest - WALL_BEAMS]
+    half = view.beams.spanned(WALL_HALF)
+    beams = np.flatnonzero(close[: nearest + half + 1])
+    beams = beams[beams >= nearest - half]
     return _along(view.origin + view.directions[beams] * view.sight[beams, None], view.pose.heading)
 
 
@@ -84,8 +85,8 @@ def _along(wall: FloatArray, heading: float) -> float:
     """Direction of the line through hits of a wall, the one of the two that is closer to the heading."""
     spread = wall - wall.mean(axis=0)
     x, y = spread[:, 0], spread[:, 1]
-    sxx, syy = float((x * x).sum()), float((y * y).sum())
-    direction = 0.5 * elementary.atan2(2.0 * float((x * y).sum()), sxx - syy)
+    sxx, syy, sxy = (float(product.sum()) for product in (x * x, y * y, x * y))
+    direction = 0.5 * elementary.atan2(2.0 * sxy, sxx - syy)
     return direction if elementary.cos(direction - heading) >= 0.0 else direction + math.pi
 
 
@@ -97,4 +98,4 @@ def _middle(view: View, within: float) -> float:
     if not len(starts):
         return 0.0
     widest = int(np.argmax(ends - starts))
-    return float(0.5 * (view.fan.angles[starts[widest]] + view.fan.angles[ends[widest]]))
+    return float(0.5 * (view.beams.angles[starts[widest]] + view.beams.angles[ends[widest]]))

@@ -9,10 +9,16 @@ import numpy as np
 
 from onehop.contracts import elementary
 from onehop.contracts.arrays import FloatArray
-from robot_agent.core.planning.view import View, squared_distances
+from robot_agent.core.planning.distances import squared_distances
+from robot_agent.core.planning.view import View
 
 STEP = 0.5
-"""Distance between the places of a way beside which obstacles are looked for [m]."""
+"""Distance between the places of a way beside which obstacles are looked for [m]: each obstacle has a
+place at most half of it away, and a bend of the way within it is small beside a team's width."""
+
+PASSAGE_AHEAD = 8.0
+"""How far ahead along its way a leader watches for passages, in inflations: 4 m, time for a team to
+become a column before it is inside."""
 
 
 def passage_width(view: View, way: FloatArray, ahead: float) -> float:
@@ -25,7 +31,7 @@ def passage_width(view: View, way: FloatArray, ahead: float) -> float:
     if len(way) < 2:
         c, s = elementary.cos(view.pose.heading), elementary.sin(view.pose.heading)
         way = view.origin + np.array(((0.0, 0.0), (ahead * c, ahead * s)))
-    places, course = _stations(way, ahead)
+    places, course = _places(way, ahead)
     nearest = squared_distances(view.obstacles, places).argmin(axis=1)
     rest, course = view.obstacles - places[nearest], course[nearest]
     along = course[:, 0] * rest[:, 0] + course[:, 1] * rest[:, 1]
@@ -35,7 +41,7 @@ def passage_width(view: View, way: FloatArray, ahead: float) -> float:
     return math.sqrt(float(squared_distances(*sides).min(initial=math.inf)))
 
 
-def _stations(way: FloatArray, ahead: float) -> tuple[FloatArray, FloatArray]:
+def _places(way: FloatArray, ahead: float) -> tuple[FloatArray, FloatArray]:
     """Places every STEP of the first `ahead` metres of a way, and the course there, (n, 2) each."""
     legs = np.diff(way, axis=0)
     length = elementary.lengths(legs[:, 0], legs[:, 1])

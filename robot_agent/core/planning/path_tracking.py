@@ -2,7 +2,10 @@
 
 Pure pursuit (Coulter 1992) aims at a point `lookahead` further along the way; the curvature that leads
 there is 2 sin(alpha) / lookahead. The speed is the leader's constant speed; it drops only where the
-turn rate could not follow, or where the next step would come closer to an obstacle than is allowed.
+turn rate could not follow. The shield refuses a step that would come closer to an obstacle than is
+allowed: the robot turns to its aim instead, and to the same aim until it can go on, because another look
+from another heading may suggest another one, and back again. Where it faces its aim and still may not go
+on, it is blocked.
 """
 
 import math
@@ -12,8 +15,17 @@ import numpy as np
 from onehop.contracts import elementary
 from onehop.contracts.arrays import FloatArray, Ranges
 from onehop.contracts.beams import Beams
-from onehop.contracts.geometry import Pose, Twist, to_local, wrap_angle
+from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_local, wrap_angle
 from onehop.contracts.sections import RobotSection
+from robot_agent.core.planning.view import NO_POINTS
+
+Point = tuple[float, float]
+
+LOOKAHEAD_S = 0.4
+"""Lookahead as driving time [s]; never less than the radius of the tightest turn at full speed."""
+
+SHORTEST_LOOKAHEAD = 1.0 / 8.0
+"""The aim comes closer, down to this part of the lookahead, while the way to it is not clear."""
 
 FULL_SPEED_BELOW = 0.6
 """Bearing of the aim up to which the leader keeps its speed [rad]."""
@@ -21,96 +33,128 @@ FULL_SPEED_BELOW = 0.6
 TURN_IN_PLACE_ABOVE = 1.3
 """Bearing of the aim from which it only turns [rad]."""
 
-Point = tuple[float, float]
-
-SHORTEST = 8.0
-"""The aim comes closer, down to this part of the lookahead, while the way to it is not clear."""
-
 ALIGNED = 0.02
-"""Bearing of the aim from which turning does not help [rad]."""
+"""A bearing below this is faced, and turning further does not help [rad]: 8 mm aside at 0.4 m."""
+
+NEAREST_AIM = 0.1
+"""The curvature is that to an aim at least this far away [m]; nearer ones would make the robot swing."""
+
+LEG_DONE = 0.02
+"""Rest of a leg of the way at which the next one begins [m]."""
+
+CAUTION_STEPS = 2.0
+"""Steps at full speed beyond the clearance within which hits are looked at; the next step is one."""
 
 
 class PathTracker:
-    """Follows one way after the other. period: of a tick [s]. clearance: to keep from obstacles [m].
+    """Does what it was told last: follows a way, or turns in place to a heading.
 
-    A step that would not keep it is not taken. The robot turns to its aim instead, and to the same aim
-    until it can go on: another look from another heading may suggest another one, and back again.
-    shielded: ticks in a row in which it faced the aim and still could not go on.
+    period_ns: of a tick. clearance: to keep from obstacles [m]. way: (n, 2) followed now [m], map frame;
+    empty while it turns. heading: turned to now [rad], or None. waypoint: end of the last way [m].
+    blocked_ns: for how long it faced its aim and could not go on.
     """
 
-    def __init__(self, body: RobotSection, fan: Beams, period: float, clearance: float) -> None:
+    def __init__(
+        self, body: RobotSection, beams: Beams, period_ns: int, clearance: float, pose: Pose
+    ) -> None:
         self.body = body
-        self.fan = fan
-        self.period = period
+        self.beams = beams
+        self.period_ns = period_ns
+        self.period = period_ns * 1e-9
         self.clearance = clearance
-        self.lookahead = max(0.4 * body.leader_speed, body.leader_speed / body.max_turn_rate)
-        self.way: list[Point] = []
-        self.leg = 0
-        self.shielded = 0
-        self.turning = 0
+        self.lookahead = max(LOOKAHEAD_S * body.leader_speed, body.leader_speed / body.max_turn_rate)
+        self.way: FloatArray = NO_POINTS
+        self.heading: float | None = None
+        self.waypoint: Point = (pose.x, pose.y)
+        self.blocked_ns = 0
+        self._points: list[Point] = []
+        self._leg = 0
+        self._side = 0
         self._held: Point | None = None
-        self._caution = clearance + max(self.lookahead, 2.0 * body.leader_speed * period)
+        step = CAUTION_STEPS * body.leader_speed * self.period
+        self._caution = clearance + max(self.lookahead, step)
 
     def follow(self, way: FloatArray) -> None:
         """Take a new way, (n, 2) [m], map frame, from where the robot is."""
-        self.way = [(float(x), float(y)) for x, y in way]
-        self.leg = 0
-        self.turning = 0
+        self.way = way
+        self.heading = None
+        self._points = [(float(x), float(y)) for x, y in way]
+        self.waypoint = self._points[-1]
+        self.blocked_ns = self._leg = self._side = 0
         self._held = None
 
+    def face(self, heading: float) -> None:
+        """Turn in place to a heading [rad]; a robot that turns already keeps its side."""
+        if self.heading is None:
+            self._side = 0
+        self.heading = wrap_angle(heading)
+        self.way = NO_POINTS
+        self.blocked_ns = 0
+
+    def stop(self) -> None:
+        """Stand still until the next way or heading."""
+        self.heading = None
+        self.way = NO_POINTS
+
+    def faces(self, pose: Pose, tolerance: float) -> bool:
+        """Does it turn to a heading, and is it there within a tolerance [rad]?"""
+        return self.heading is not None and abs(wrap_angle(self.heading - pose.heading)) < tolerance
+
+    def ended(self, pose: Pose, tolerance: float) -> bool:
+        """Does it follow a way, and is it at its end within a tolerance [m]?"""
+        return len(self.way) > 0 and math.dist((pose.x, pose.y), self.waypoint) < tolerance
+
     def drive(self, pose: Pose, scan: Ranges) -> Twist:
-        """The twist for this tick on the way; standstill at its end."""
+        """The twist for this tick; standstill at the end of a way."""
+        if self.heading is not None:
+            return self._turn(wrap_angle(self.heading - pose.heading))
         if len(self.way) < 2:
-            return Twist(0.0, 0.0)
-        near = self._near(scan)
+            return STANDSTILL
+        near = self._near_hits(scan)
         aim = self._held or self._clear_aim(pose, near)
         x, y = to_local(pose, *aim)
         bearing = elementary.atan2(y, x)
-        twist = self.towards(bearing, math.hypot(x, y))
+        twist = self._pursue(bearing, math.hypot(x, y))
         if self._keeps(near, twist):
-            self.shielded, self._held = 0, None
+            self.blocked_ns, self._held = 0, None
             return twist
         self._held = aim
         if abs(bearing) < ALIGNED:
-            self.shielded += 1
-            return Twist(0.0, 0.0)
+            self.blocked_ns += self.period_ns
+            return STANDSTILL
         return self._turn(bearing)
 
-    def towards(self, bearing: float, distance: float) -> Twist:
+    def _pursue(self, bearing: float, distance: float) -> Twist:
         """Twist that leads to a point nearby, as the robot sees it [rad, m], by pure pursuit."""
         if distance < 1e-6:
-            return Twist(0.0, 0.0)
+            return STANDSTILL
         size = abs(bearing)
-        if size > TURN_IN_PLACE_ABOVE or (self.turning and size > FULL_SPEED_BELOW):
+        if size > TURN_IN_PLACE_ABOVE or (self._side and size > FULL_SPEED_BELOW):
             return self._turn(bearing)
-        self.turning = 0
+        self._side = 0
         speed = min(self.body.leader_speed, distance / self.period)
         if size > FULL_SPEED_BELOW:
             speed *= (TURN_IN_PLACE_ABOVE - size) / (TURN_IN_PLACE_ABOVE - FULL_SPEED_BELOW)
-        w = speed * 2.0 * elementary.sin(bearing) / max(distance, 0.1)
+        w = speed * 2.0 * elementary.sin(bearing) / max(distance, NEAREST_AIM)
         limit = self.body.max_turn_rate
         if abs(w) > limit:
             speed *= limit / abs(w)
             w = math.copysign(limit, w)
         return Twist(speed, w)
 
-    def turn_to(self, pose: Pose, heading: float) -> Twist:
-        """Turn in place to a heading."""
-        return self._turn(wrap_angle(heading - pose.heading))
-
     def _turn(self, bearing: float) -> Twist:
         """Turn in place; the side is kept until the turn is done, or two could alternate forever."""
-        if not self.turning:
-            self.turning = 1 if bearing >= 0 else -1
-        if bearing * self.turning < 0 and abs(bearing) < math.pi / 2:
-            self.turning = -self.turning
+        if not self._side:
+            self._side = 1 if bearing >= 0 else -1
+        if bearing * self._side < 0 and abs(bearing) < math.pi / 2:
+            self._side = -self._side
         rate = min(self.body.max_turn_rate, abs(bearing) / self.period)
-        return Twist(0.0, rate * self.turning)
+        return Twist(0.0, rate * self._side)
 
-    def _near(self, scan: Ranges) -> FloatArray:
+    def _near_hits(self, scan: Ranges) -> FloatArray:
         """Hits that matter to the next piece of the way, (n, 2) [m], as the robot sees them."""
         seen = np.flatnonzero(scan <= self._caution)
-        return np.asarray(self.fan.directions[seen] * scan[seen, None].astype(np.float64))
+        return np.asarray(self.beams.directions[seen] * scan[seen, None].astype(np.float64))
 
     def _clear_aim(self, pose: Pose, near: FloatArray) -> Point:
         """The furthest aim to which the straight way is clear.
@@ -119,9 +163,10 @@ class PathTracker:
         nearer the aim, the less is cut.
         """
         lookahead = self.lookahead
+        shortest = SHORTEST_LOOKAHEAD * lookahead
         while True:
             aim = self._aim(pose, lookahead)
-            if lookahead <= self.lookahead / SHORTEST or self._clear(near, *to_local(pose, *aim)):
+            if lookahead <= shortest or self._clear(near, *to_local(pose, *aim)):
                 return aim
             lookahead *= 0.5
 
@@ -152,17 +197,18 @@ class PathTracker:
         """The point of the way that lies `lookahead` beyond the robot's foot point on it."""
         x, y = pose.x, pose.y
         while True:
-            (ax, ay), (bx, by) = self.way[self.leg], self.way[self.leg + 1]
+            (ax, ay), (bx, by) = self._points[self._leg], self._points[self._leg + 1]
             dx, dy = bx - ax, by - ay
             length = math.hypot(dx, dy)
             along = 0.0 if length < 1e-9 else ((x - ax) * dx + (y - ay) * dy) / length
-            if along < length - 0.02 or self.leg == len(self.way) - 2:
+            if along < length - LEG_DONE or self._leg == len(self._points) - 2:
                 break
-            self.leg += 1
+            self._leg += 1
         ahead = max(along, 0.0) + lookahead
-        for (ax, ay), (bx, by) in zip(self.way[self.leg :], self.way[self.leg + 1 :], strict=False):
+        legs = zip(self._points[self._leg :], self._points[self._leg + 1 :], strict=False)
+        for (ax, ay), (bx, by) in legs:
             length = math.dist((ax, ay), (bx, by))
             if ahead <= length:
                 return ax + (bx - ax) * ahead / length, ay + (by - ay) * ahead / length
             ahead -= length
-        return self.way[-1]
+        return self._points[-1]

@@ -10,7 +10,10 @@ from robot_agent.core.planning.thesis_planner import ThesisPlanner
 
 
 def make_pathfinder(briefing: Briefing, pose: Pose, rng: np.random.Generator) -> ObservablePathfinder:
-    """A pathfinder for a leader that stands at `pose`; rng is its own random stream."""
+    """A pathfinder for a leader that stands at `pose`; rng is its own random stream.
+
+    `escape` is what scenarios call the frontier planner; `modified` and `original` are the thesis's.
+    """
     if briefing.planner.kind == "escape":
         return FrontierPlanner(briefing, pose, rng)
     return ThesisPlanner(briefing, pose, rng, limited=briefing.planner.kind == "modified")

@@ -11,7 +11,8 @@ import numpy.typing as npt
 
 from onehop.contracts import elementary
 from onehop.contracts.arrays import BoolArray, FloatArray
-from robot_agent.core.planning.view import View, squared_distances
+from robot_agent.core.planning.distances import squared_distances
+from robot_agent.core.planning.view import NO_POINTS, View
 
 Indices = npt.NDArray[np.intp]
 
@@ -29,7 +30,7 @@ class RoadMap:
     """Points known to be free, with edges known to be clear. Point 0 is the robot (virtual start).
 
     Guarantee: with a clearance 4 % above the inflation, every edge keeps the inflation from the outline
-    drawn through neighbouring hits up to 20 grains apart, or as much as the robot has already. What no
+    drawn through neighbouring hits (outline.py), or as much as the robot has already. What no
     beam hit is not covered: a corner between two hits stands out by up to half of their distance.
 
     points: (n, 2) float64 [m]. marks: (n,) index of the extra point that a point is, or -1.
@@ -145,13 +146,13 @@ class RoadMap:
             cost = better
         return cost
 
-    def path(self, goal: int) -> FloatArray | None:
-        """Shortest way from the robot to point `goal`, (n, 2) [m], robot first; None if none."""
+    def path(self, goal: int) -> FloatArray:
+        """Shortest way from the robot to point `goal`, (n, 2) [m], robot first; empty if none."""
         chain = self.chain(goal)
-        return None if chain is None else self.shorten(chain)
+        return self.shorten(chain) if chain else NO_POINTS
 
-    def chain(self, goal: int) -> list[int] | None:
-        """The points of the shortest way to point `goal` by A*, the robot first; None if none.
+    def chain(self, goal: int) -> list[int]:
+        """The points of the shortest way to point `goal` by A*, the robot first; empty if none.
 
         The search begins with the robot expanded: all points that it sees are on the heap, but for those
         over which no way can be shorter than the straight one.
@@ -178,7 +179,7 @@ class RoadMap:
                     cost[there], origin[there] = reached, here
                     heapq.heappush(heap, (reached + guess[there], there))
         if goal not in cost:
-            return None
+            return []
         chain = [goal]
         while chain[-1] != 0:
             chain.append(origin[chain[-1]])

@@ -27,4 +27,4 @@ class PlanningSnapshot:
 class ObservablePathfinder(Pathfinder, Protocol):
     """A pathfinder that shows its last planning moment; a new one is a new object."""
 
-    survey: PlanningSnapshot | None
+    snapshot: PlanningSnapshot | None

@@ -20,20 +20,28 @@ from onehop.contracts.beams import Beams
 from onehop.contracts.briefings import Briefing
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
 from onehop.contracts.messages import Note
-from robot_agent.core.planning.guidance import Guidance, PlannerStatus
+from robot_agent.core.planning.distances import squared_distances
+from robot_agent.core.planning.guidance import ARRIVED_WITHIN, Guidance, PlannerStatus
 from robot_agent.core.planning.obstacle import TURNS, Obstacle, classify, fan_direction
-from robot_agent.core.planning.passage import passage_width
-from robot_agent.core.planning.path_tracking import PathTracker
+from robot_agent.core.planning.passage import PASSAGE_AHEAD, passage_width
+from robot_agent.core.planning.path_tracking import ALIGNED, PathTracker, Point
+from robot_agent.core.planning.perception import GRAIN
 from robot_agent.core.planning.roadmap import RoadMap
 from robot_agent.core.planning.sampling import sample_fan
 from robot_agent.core.planning.snapshot import PlanningSnapshot
-from robot_agent.core.planning.view import NO_POINTS, View, squared_distances
+from robot_agent.core.planning.view import NO_POINTS, View
 
 LIMITED_HALF = math.radians(45.0)
-"""Half opening of the limited fan [rad]; the thesis draws it (fig. 3.6) and gives no number."""
+"""Half of the limited fan [rad]; the thesis draws it (fig. 3.6) and gives no number."""
 
 MOST_TURNS = 4
 """Turns of the fan at one virtual goal: then the whole circle was looked at."""
+
+REACHED = 0.4
+"""A virtual goal this near is reached, in inflations."""
+
+GIVE_UP_S = 2.0
+"""Time after which a robot that cannot come closer to its virtual goal takes it as reached [s]."""
 
 
 class ThesisPlanner:
@@ -42,68 +50,65 @@ class ThesisPlanner:
     def __init__(self, briefing: Briefing, pose: Pose, rng: np.random.Generator, limited: bool) -> None:
         self.section, self.rng, self.limited = briefing.planner, rng, limited
         self.goal: FloatArray = np.array((briefing.goal.x, briefing.goal.y))
-        self.tolerance = briefing.goal.tolerance
-        self.fan = Beams(briefing.body)
+        self.arrived_within = ARRIVED_WITHIN * briefing.goal.tolerance
+        self.beams = Beams(briefing.body)
         self.inflation = self.section.inflation
-        self.driver = PathTracker(briefing.body, self.fan, briefing.period_ns * 1e-9, self.inflation)
-        self.virtual_goals: list[tuple[float, float]] = [(pose.x, pose.y)]
+        self.tracker = PathTracker(briefing.body, self.beams, briefing.period_ns, self.inflation, pose)
+        self.tracker.face(self._to_goal(pose))
+        self.virtual_goals: list[Point] = [(pose.x, pose.y)]
         self.used: FloatArray = np.array([(pose.x, pose.y)])
-        self.facing: float | None = self._to_goal(pose)
         self.turns = 0
         self.passage = math.inf
-        self.waypoint = (pose.x, pose.y)
-        self.progress = PlannerStatus.DRIVING
-        self.survey: PlanningSnapshot | None = None
+        self.status = PlannerStatus.DRIVING
+        self.snapshot: PlanningSnapshot | None = None
         self.notes: list[Note] = []
 
     def step(self, pose: Pose, scan: Ranges) -> Guidance:
         """See Pathfinder."""
         remaining = math.dist((pose.x, pose.y), self.goal)
-        if remaining <= 0.6 * self.tolerance:
-            self.progress = PlannerStatus.ARRIVED
+        if remaining <= self.arrived_within:
+            self.status = PlannerStatus.ARRIVED
         twist = STANDSTILL
-        if self.progress is PlannerStatus.DRIVING:
+        if self.status is PlannerStatus.DRIVING:
             twist = self._drive(pose, scan)
         notes, self.notes = tuple(self.notes), []
-        return Guidance(twist, self.progress, remaining, self.passage, self.waypoint, notes)
+        return Guidance(twist, self.status, remaining, self.passage, self.tracker.waypoint, notes)
 
     def _drive(self, pose: Pose, scan: Ranges) -> Twist:
-        if self.facing is not None:
-            if abs(wrap_angle(self.facing - pose.heading)) > 0.02:
-                return self.driver.turn_to(pose, self.facing)
-            self.facing = None
+        """Turn, plan, or go on. A robot that plans stands for that tick if it is to turn next."""
+        tracker = self.tracker
+        if tracker.heading is not None:
+            if not tracker.faces(pose, ALIGNED):
+                return tracker.drive(pose, scan)
+            tracker.stop()
             self._plan(pose, scan)
         elif self._there(pose):
             self.turns = 0
             self._plan(pose, scan)
-        if self.facing is not None or self.progress is not PlannerStatus.DRIVING:
+        if tracker.heading is not None or self.status is not PlannerStatus.DRIVING:
             return STANDSTILL
-        return self.driver.drive(pose, scan)
+        return tracker.drive(pose, scan)
 
     def _there(self, pose: Pose) -> bool:
         """At the virtual goal, or unable to come closer to it."""
-        near = 0.4 * self.inflation
-        return math.dist((pose.x, pose.y), self.waypoint) < near or self.driver.shielded > 40
+        blocked = self.tracker.blocked_ns > GIVE_UP_S * 1e9
+        return blocked or self.tracker.ended(pose, REACHED * self.inflation)
 
     def _to_goal(self, pose: Pose) -> float:
         return elementary.atan2(self.goal[1] - pose.y, self.goal[0] - pose.x)
 
-    def _face(self, heading: float) -> None:
-        self.facing = wrap_angle(heading)
-        self.driver.turning = 0
-
     def _plan(self, pose: Pose, scan: Ranges) -> None:
         """One round of Algorithm 2 from where the robot stands, facing the fan's direction."""
-        view = View(self.fan, pose, scan, 0.1 * self.inflation)
+        view = View(self.beams, pose, scan, GRAIN * self.inflation)
         obstacle = classify(view, self.section.classify_range) if self.limited else Obstacle.NONE
         if obstacle is Obstacle.NONE and not self.turns:
             ahead = self._to_goal(pose)
-            if abs(wrap_angle(ahead - pose.heading)) > 0.02:
-                self._face(ahead)
+            if abs(wrap_angle(ahead - pose.heading)) > ALIGNED:
+                self.tracker.face(ahead)
                 return
         if obstacle in TURNS and self.turns < MOST_TURNS:
             self.turns += 1
-            self._face(pose.heading + TURNS[obstacle])
+            self.tracker.face(pose.heading + TURNS[obstacle])
             return
         beside = obstacle in (Obstacle.LEFT, Obstacle.RIGHT, Obstacle.BOTH)
         turned = beside or self.turns > 0
@@ -114,7 +119,7 @@ class ThesisPlanner:
         samples = sample_fan(view, draws, direction, half, self.inflation)
         roadmap = RoadMap(view, samples, self.goal[None], self.inflation, self.inflation)
         self._advance(pose, roadmap, samples, direction if turned else None)
-        self.passage = passage_width(view, np.array(self.driver.way), 8.0 * self.inflation)
+        self.passage = passage_width(view, self.tracker.way, PASSAGE_AHEAD * self.inflation)
 
     def _advance(
         self, pose: Pose, roadmap: RoadMap, samples: FloatArray, direction: float | None
@@ -124,7 +129,7 @@ class ThesisPlanner:
         offset = roadmap.points - roadmap.points[0]
         good = np.flatnonzero(np.isfinite(costs) & self._unused(roadmap.points) & (roadmap.marks != 0))
         at_goal = np.flatnonzero((roadmap.marks == 0) & np.isfinite(costs))
-        way: FloatArray | None = None
+        way = NO_POINTS
         if len(at_goal):
             way = roadmap.path(int(at_goal[0]))
         elif len(good):
@@ -134,13 +139,13 @@ class ThesisPlanner:
                 ahead, left = elementary.cos(direction), elementary.sin(direction)
                 worth = offset[good, 0] * ahead + offset[good, 1] * left
             way = roadmap.path(int(good[np.argmax(worth)]))
-        if way is None:
+        if not len(way):
             self._step_back(pose, roadmap, samples)
             return
         self.virtual_goals.append((float(way[-1][0]), float(way[-1][1])))
         self.used = np.concatenate((self.used, way[-1:]))
-        self._take(way)
-        self.survey = PlanningSnapshot(pose, samples, roadmap, way, backtrack=False)
+        self.tracker.follow(way)
+        self.snapshot = PlanningSnapshot(pose, samples, roadmap, way, backtrack=False)
 
     def _unused(self, points: FloatArray) -> BoolArray:
         """Which (n, 2) points may become a virtual goal: not the robot itself, and for `original` not
@@ -153,15 +158,10 @@ class ThesisPlanner:
         """Back to the virtual goal before (listing, 2a); at the start there is nowhere left to go."""
         self.virtual_goals.pop()
         if not self.virtual_goals:
-            self.progress = PlannerStatus.NO_WAY
+            self.status = PlannerStatus.NO_WAY
             self.notes.append(Note("no_way", {"virtual_goals": len(self.used)}))
             way = NO_POINTS
         else:
             way = np.array(((pose.x, pose.y), self.virtual_goals[-1]))
-            self._take(way)
-        self.survey = PlanningSnapshot(pose, samples, roadmap, way, backtrack=True)
-
-    def _take(self, way: FloatArray) -> None:
-        self.driver.follow(way)
-        self.driver.shielded = 0
-        self.waypoint = (float(way[-1][0]), float(way[-1][1]))
+            self.tracker.follow(way)
+        self.snapshot = PlanningSnapshot(pose, samples, roadmap, way, backtrack=True)

@@ -1,62 +1,71 @@
 """What one scan shows: points that were hit, what is visible, and how much room is left around a way.
 
-Works in the map frame. Beside the beams it holds `beside`: points that left the field of view a moment
-ago and still lie beside or behind the robot (a bounded memory, see `RecentObstacles`); a laser that
-looks 180 degrees ahead cannot turn around a corner without them.
+Works in the map frame. Beside the beams it holds `hidden`: points that left the field of view a moment
+ago and still lie beside or behind the robot (`RecentObstacles`).
 """
 
 import math
+from functools import cached_property
 
 import numpy as np
-import numpy.typing as npt
 
 from onehop.contracts import elementary
 from onehop.contracts.arrays import BoolArray, FloatArray, Ranges
 from onehop.contracts.beams import Beams
 from onehop.contracts.geometry import Pose
-
-Float32Array = npt.NDArray[np.float32]
-
-BLOCK = 16384
-"""Elements worked on at once: 64 KB stay in the cache and off the page allocator."""
+from robot_agent.core.planning.distances import (
+    Float32Array,
+    squared_distances,
+    squared_segment_distances,
+)
+from robot_agent.core.planning.outline import outline
 
 NO_POINTS: FloatArray = np.empty((0, 2))
+
+SLACK = np.float32(0.01)
+"""How much nearer than now a robot inside an inflated obstacle may come to it [m]: more than a thinned
+outline and single precision take away, or it could not even move along it."""
+
+SEEN_NEARBY = 4.0
+"""A place within this many margins of the robot was in view a moment ago, whatever its bearing."""
+
+ON_A_BEAM = 1e-6
+"""Share of a spacing by which a place may miss a beam and still lie on it."""
+
+OUTLINE_END = math.radians(6.0)
+"""An open beam within this angle of one that hit something is beside an outline that leaves the laser's
+range [rad]: 1 m at 10 m, what a robot needs to pass."""
 
 
 class View:
     """One scan seen from one pose.
 
     sight: (n_beams,) float64 [m], free range along each beam, laser range where nothing returned.
-    obstacles: (n, 2) float64 [m], what the beams hit, and `beside`. Of hits closer
-    together than `grain` (a tenth of the inflation) some are left out: a clearance c is then wrong by at
-    most grain^2 / (8 c).
+    solid: (n_beams,) whether something returned. obstacles: (n, 2) float64 [m], the outline of what the
+    beams hit, with a point for each `grain` [m] of it, and `hidden`. A clearance c is wrong by at most
+    grain^2 / (8 c).
     """
 
     def __init__(
-        self,
-        fan: Beams,
-        pose: Pose,
-        scan: Ranges,
-        grain: float,
-        beside: FloatArray = NO_POINTS,
+        self, beams: Beams, pose: Pose, scan: Ranges, grain: float, hidden: FloatArray = NO_POINTS
     ) -> None:
-        self.fan = fan
+        self.beams = beams
         self.pose = pose
         self.origin: FloatArray = np.array((pose.x, pose.y))
         seen = np.isfinite(scan)
-        self.sight: FloatArray = np.where(seen, scan, fan.range).astype(np.float64)
+        self.sight: FloatArray = np.where(seen, scan, beams.range).astype(np.float64)
         self.solid: BoolArray = seen
         c, s = elementary.cos(pose.heading), elementary.sin(pose.heading)
-        d = fan.directions
+        d = beams.directions
         self.directions: FloatArray = np.column_stack(
             (c * d[:, 0] - s * d[:, 1], s * d[:, 0] + c * d[:, 1])
         )
         hits = self.origin + self.directions[seen] * self.sight[seen, None]
-        self.obstacles: FloatArray = np.concatenate((_outline(hits, grain), beside))
+        self.obstacles: FloatArray = np.concatenate((outline(hits, grain, beams.spacing), hidden))
         self._shown_to = _shown_to(self.sight)
-        have = squared_distances(self.origin[None], self.obstacles)[0]
-        kept = np.maximum(np.sqrt(have) - np.float32(0.01), np.float32(0.0))
-        self._kept = kept * kept
+        have = np.sqrt(squared_distances(self.origin[None], self.obstacles)[0])
+        kept = np.maximum(have - SLACK, np.float32(0.0))
+        self._kept2 = kept * kept
 
     def polar(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Bearing [rad, relative to the heading, in (-pi, pi]] and distance [m] of (n, 2) points."""
@@ -75,11 +84,11 @@ class View:
 
     def shows(self, ahead: FloatArray, left: FloatArray) -> BoolArray:
         """The same for places ahead and to the left of the robot, any shape [m]."""
-        first, last = self.fan.angles[0], self.fan.angles[-1]
+        first, last = self.beams.angles[0], self.beams.angles[-1]
         place = np.arctan2(left, ahead)  # becomes a whole number: its last bits do not count
         place -= first
-        place *= (len(self.fan.angles) - 1) / (last - first)
-        place += 1.0 + 1e-6
+        place *= (len(self.beams.angles) - 1) / (last - first)
+        place += 1.0 + ON_A_BEAM
         beam = np.clip(place, 0.0, len(self._shown_to) - 1.0, out=place).astype(np.intp)
         return np.asarray(ahead * ahead + left * left <= self._shown_to[beam])
 
@@ -88,8 +97,10 @@ class View:
         can be closer than `margin`; what is near the robot counts, because it was in view a moment ago.
         """
         bearing, distance = self.polar(points)
-        inside = np.clip(self.fan.angles[-1] - np.abs(bearing), 0.0, math.pi / 2)
-        return np.asarray((distance * elementary.sines(inside) >= margin) | (distance < 4.0 * margin))
+        inside = np.clip(self.beams.angles[-1] - np.abs(bearing), 0.0, math.pi / 2)
+        return np.asarray(
+            (distance * elementary.sines(inside) >= margin) | (distance < SEEN_NEARBY * margin)
+        )
 
     def allowance(self, clearance: float) -> Float32Array:
         """Least distance to keep from each obstacle, squared, (n,) [m2].
@@ -97,7 +108,7 @@ class View:
         It is `clearance`, but never more than the robot has now: who starts inside an inflated
         obstacle may move out of it, not further in.
         """
-        return np.asarray(np.minimum(np.float32(clearance * clearance), self._kept))
+        return np.asarray(np.minimum(np.float32(clearance * clearance), self._kept2))
 
     def free(self, points: FloatArray, clearance: float) -> tuple[BoolArray, FloatArray]:
         """Which (n, 2) points keep `clearance` (or the allowance), and the room of each, (n,) [m]."""
@@ -107,126 +118,32 @@ class View:
 
     def passable(self, a: FloatArray, b: FloatArray, clearance: float) -> BoolArray:
         """Which segments a[i]-b[i], (n, 2) each, keep `clearance` (or the allowance) all along."""
-        room = segment_distances2(a, b, self.obstacles) >= self.allowance(clearance)
+        room = squared_segment_distances(a, b, self.obstacles) >= self.allowance(clearance)
         return np.asarray(room.all(axis=1))
 
     def passable_twice(
         self, a: FloatArray, b: FloatArray, tight: float, wide: float
     ) -> tuple[BoolArray, BoolArray]:
         """`passable` for two clearances at once."""
-        distance2 = segment_distances2(a, b, self.obstacles)
+        distance2 = squared_segment_distances(a, b, self.obstacles)
         keeps_tight = (distance2 >= self.allowance(tight)).all(axis=1)
         keeps_wide = (distance2 >= self.allowance(wide)).all(axis=1)
         return np.asarray(keeps_tight), np.asarray(keeps_wide)
 
-
-class RecentObstacles:
-    """Points that left the field of view but are still near: at most `capacity`, 16 B each."""
-
-    def __init__(self, reach: float, capacity: int = 256) -> None:
-        self.reach = reach
-        self.capacity = capacity
-        self.points: FloatArray = NO_POINTS
-
-    def beside(self, pose: Pose, half_view: float) -> FloatArray:
-        """The remembered points that the laser cannot see from `pose`, (n, 2) [m]."""
-        dx, dy = self.points[:, 0] - pose.x, self.points[:, 1] - pose.y
-        bearing = elementary.directions(dy, dx) - pose.heading
-        hidden = elementary.cosines(bearing) < elementary.cos(half_view - 0.02)
-        return self.points[hidden & (dx * dx + dy * dy < self.reach * self.reach)]
-
-    def keep(self, view: View) -> None:
-        """Remember the obstacles of this view that are within reach, the nearest first."""
-        points = view.obstacles
-        distance2 = squared_distances(view.origin[None], points)[0]
-        near = np.flatnonzero(distance2 < 2.25 * self.reach * self.reach)
-        order = near[np.argsort(distance2[near], kind="stable")]
-        self.points = points[order[: self.capacity]]
+    @cached_property
+    def outline_ends(self) -> BoolArray:
+        """Which beams go free past an obstacle whose outline leaves the laser's range, (n_beams,)."""
+        return np.asarray(~self.solid & self.beams.near(self.solid, OUTLINE_END))
 
 
 def _shown_to(sight: FloatArray) -> FloatArray:
     """How far squared everything is shown between each beam and the next, (n_beams + 2,) [m2].
 
-    The last beam counts as the space beyond it, up to rounding; outside of the fan nothing is shown.
+    The last beam counts as the space beyond it, up to rounding; outside of the field of view nothing is
+    shown.
     """
     shown = np.full(len(sight) + 2, -1.0)
     np.minimum(sight[:-1], sight[1:], out=shown[1:-2])
     shown[-2] = sight[-1]
     shown[1:-1] *= shown[1:-1]
     return shown
-
-
-def _outline(hits: FloatArray, grain: float) -> FloatArray:
-    """The same outline with other points: one for each step of `grain` along it where hits are dense,
-    and one more between hits that are too far apart to see a wall by, but not far enough to pass.
-    """
-    if len(hits) < 3:
-        return hits
-    leg = hits[1:] - hits[:-1]
-    step = elementary.lengths(leg[:, 0], leg[:, 1])
-    cell = np.floor(np.cumsum(np.minimum(step, grain)) / grain)
-    keep = np.ones(len(hits), dtype=np.bool_)
-    keep[1] = cell[0] > 0.0
-    keep[2:-1] = cell[1:-1] > cell[:-2]
-    wide = np.flatnonzero((step > 5.0 * grain) & ((step < 20.0 * grain) | _same_wall(leg, step)))
-    more = (step[wide] / (5.0 * grain)).astype(np.intp)
-    first = np.repeat(wide, more)
-    place = np.arange(1, len(first) + 1) - np.repeat(np.cumsum(more) - more, more)
-    between = hits[first] + leg[first] * (place / np.repeat(more + 1, more))[:, None]
-    return np.concatenate((hits[keep], between))
-
-
-def _same_wall(leg: FloatArray, step: FloatArray) -> BoolArray:
-    """Which gaps between consecutive hits lie in line with the gap before or after them and are not
-    much wider: a wall that the beams graze, not a way through it. leg: (n, 2) gaps [m], step: lengths.
-    """
-    turn = (leg[1:] * leg[:-1]).sum(axis=1) > 0.99 * step[1:] * step[:-1]
-    straight = np.zeros(len(step), dtype=np.bool_)
-    straight[1:] = turn & (step[1:] < 1.6 * step[:-1])
-    straight[:-1] |= turn & (step[:-1] < 1.6 * step[1:])
-    return straight
-
-
-def squared_distances(a: FloatArray, b: FloatArray) -> Float32Array:
-    """All squared distances between (n, 2) and (m, 2) points, (n, m) float32 [m2].
-
-    Single precision relative to the first point, and in place: these matrices are most of a planning
-    moment, and allocating fresh ones costs more than filling them.
-    """
-    if not len(a) or not len(b):
-        return np.empty((len(a), len(b)), dtype=np.float32)
-    single_a, single_b = (a - a[0]).astype(np.float32), (b - a[0]).astype(np.float32)
-    dx: Float32Array = single_a[:, :1] - single_b[:, 0]
-    dy = single_a[:, 1:] - single_b[:, 1]
-    dx *= dx
-    dy *= dy
-    dx += dy
-    return dx
-
-
-def segment_distances2(a: FloatArray, b: FloatArray, points: FloatArray) -> Float32Array:
-    """Squared distances of (m, 2) points from segments a[i]-b[i], (n, m) float32 [m2]; as above."""
-    result = np.empty((len(a), len(points)), dtype=np.float32)
-    if not result.size:
-        return result
-    ax, ay = (a - a[0]).astype(np.float32).T
-    bx, by = (b - a[0]).astype(np.float32).T
-    ox, oy = (points - a[0]).astype(np.float32).T.copy()
-    dx, dy = bx - ax, by - ay
-    over_length2 = np.float32(1.0) / np.maximum(dx * dx + dy * dy, np.float32(1e-9))
-    rows = max(1, BLOCK // len(points))
-    for low in range(0, len(a), rows):
-        part = slice(low, low + rows)
-        px = np.subtract(ox, ax[part, None], out=result[part])
-        py = oy - ay[part, None]
-        t = px * dx[part, None]
-        work = py * dy[part, None]
-        t += work
-        t *= over_length2[part, None]
-        np.clip(t, 0.0, 1.0, out=t)
-        px -= np.multiply(t, dx[part, None], out=work)
-        py -= np.multiply(t, dy[part, None], out=work)
-        px *= px
-        py *= py
-        px += py
-    return result

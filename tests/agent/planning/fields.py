@@ -4,6 +4,10 @@ import tomllib
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
+from onehop.contracts.beams import Beams
+from onehop.contracts.geometry import Pose
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import (
     ClockSection,
@@ -11,10 +15,13 @@ from onehop.contracts.sections import (
     MapSection,
     PlannerSection,
     Point,
+    RobotSection,
     StartSection,
 )
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
+from robot_agent.core.planning.view import View
+from world_server.core.laser import Laser
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -65,3 +72,11 @@ def alone(
         clock=ClockSection(limit_s=limit_s),
     )
     return scenario, load_map(ground, {})
+
+
+def look(ground: MapSection, x: float, y: float, heading: float, beams: int = 181) -> View:
+    """What a laser with that many beams shows from there."""
+    body = replace(RobotSection(), laser_beams=beams)
+    laser = Laser(load_map(ground, {}), body)
+    scan = laser.scans(np.array([(x, y, heading)]), np.zeros(1, dtype=np.int32))[0]
+    return View(Beams(body), Pose(x, y, heading), scan, 0.05)

@@ -13,7 +13,7 @@ from robot_agent.core.planning.boundary import _pivot, settle, trace
 from robot_agent.core.planning.view import View
 
 BODY = RobotSection()
-FAN = Beams(BODY)
+BEAMS = Beams(BODY)
 NOTHING_SEEN = np.full(BODY.laser_beams, np.inf, dtype=np.float32)
 
 
@@ -52,7 +52,7 @@ def test_disc_passes_a_gap_only_if_it_fits(gap: float, passes: bool) -> None:
     """Two walls with a gap between: a disc of radius 0.5 rolls over it or around the end."""
     s = np.arange(0.0, 4.0, 0.05)
     walls = np.concatenate((np.column_stack((s, 0 * s)), np.column_stack((4.0 + gap + s, 0 * s))))
-    view = View(FAN, Pose(2.0, -2.0, 0.0), NOTHING_SEEN, 0.05, walls)
+    view = View(BEAMS, Pose(2.0, -2.0, 0.0), NOTHING_SEEN, 0.05, walls)
     traced = trace(view, np.array((2.0, -0.5)), 0.5, 1, 10.0)
     assert (traced[:, 0].max() > 6.0) is not passes
 
@@ -61,6 +61,6 @@ def test_trace_stops_where_nothing_is_known() -> None:
     """Behind the robot and out of reach of its memory nothing is known to be free."""
     s = np.arange(-9.0, 9.0, 0.05)
     wall = np.column_stack((s, 0 * s))
-    view = View(FAN, Pose(0.0, -0.5, 0.0), NOTHING_SEEN, 0.05, wall)
+    view = View(BEAMS, Pose(0.0, -0.5, 0.0), NOTHING_SEEN, 0.05, wall)
     assert trace(view, np.array((0.0, -0.5)), 0.5, 1, 10.0)[:, 0].max() > 8.0
     assert trace(view, np.array((0.0, -0.5)), 0.5, -1, 10.0)[:, 0].min() > -1.2

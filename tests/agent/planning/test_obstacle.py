@@ -6,8 +6,7 @@ import pytest
 
 from onehop.contracts.sections import Point
 from robot_agent.core.planning.obstacle import TURNS, Obstacle, classify, fan_direction
-from tests.agent.planning.fields import box, field
-from tests.agent.planning.test_roadmap import look
+from tests.agent.planning.fields import box, field, look
 
 AHEAD, LEFT, RIGHT = box(17, 14, 18, 16), box(10, 17, 30, 18), box(10, 12, 30, 13)
 
@@ -37,9 +36,10 @@ def test_turns_are_those_of_the_thesis() -> None:
     assert degrees == {Obstacle.LEFT_CORNER: -90, Obstacle.RIGHT_CORNER: 90, Obstacle.FRONT: 180}
 
 
+@pytest.mark.parametrize("beams", [90, 181, 721])
 @pytest.mark.parametrize("heading", [-0.3, 0.0, 0.3])
-def test_beside_a_wall_the_fan_points_along_it(heading: float) -> None:
-    view = look(field(LEFT, size=40.0), 15.0, 15.0, heading)
+def test_beside_a_wall_the_fan_points_along_it(heading: float, beams: int) -> None:
+    view = look(field(LEFT, size=40.0), 15.0, 15.0, heading, beams)
     assert fan_direction(view, Obstacle.LEFT, 3.0) == pytest.approx(0.0, abs=0.05)
 
 
