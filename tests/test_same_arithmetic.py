@@ -44,12 +44,6 @@ ALLOWED = [
         "math.asin(radius / math.sqrt(squared))",
         "with a margin selects the beams that are tested, each by +, -, * and sqrt",
     ),
-    (
-        "sampling",
-        "edge_samples",
-        "np.convolve(view.solid, np.ones(13), mode='same')",
-        "counts: sums of zeros and ones have no last place to lose, in any order",
-    ),
 ]
 """Module, function, expression, and why it may stay."""
 
