@@ -192,6 +192,15 @@ class PlannerSection:
     patience: Annotated[float, Range(0.1, 1e6)] = 50.0
 
 
+def beside_goal(goal: GoalSection, body: RobotSection, planner: PlannerSection) -> float:
+    """Distance from the goal within which a leader is beside a robot that stands on it [m].
+
+    The other one's middle is within the goal's tolerance, and a planner keeps a little more than the
+    inflation from its hull.
+    """
+    return goal.tolerance + body.radius + 1.2 * planner.inflation
+
+
 @dataclass(frozen=True, slots=True)
 class ClockSection:
     """period_ms: length of a tick, in which everyone waits for its inputs and for nothing else.

@@ -17,6 +17,7 @@ from onehop.contracts.units import NANOSECONDS
 from robot_agent.core.motion.follower import Follower
 from robot_agent.core.motion.gains import make_policy
 from robot_agent.core.motion.leader import Leader, PathfinderMaker
+from robot_agent.core.motion.occupied_goal import OccupiedGoal
 from robot_agent.core.motion.safety import SafetyFilter
 from robot_agent.core.motion.slot import Settling, shape_in_force, slot_pose
 from robot_agent.core.motion.tracking import sampled
@@ -50,6 +51,7 @@ class Robot:
         self._follower = Follower(body, gains, beams, dodge)
         self._leader = Leader(briefing, gains, beams, make_pathfinder, rng)
         self._safety = SafetyFilter(body, beams, period)
+        self._occupied_goal = OccupiedGoal(briefing, beams)
         self._settling = Settling(period)
         self._threshold = required_throughput_bps(briefing)
         self._protocol: TeamProtocol | None = None
@@ -144,9 +146,11 @@ class Robot:
         self._target = (goal.x, goal.y)
         self._error = self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
         self._in_position = True
-        decision = self._leader.step(
-            protocol.state, part, now_ns, pose, scan, nearest, protocol.rules.trail
-        )
+        state = protocol.state
+        decision = self._leader.step(state, part, now_ns, pose, scan, nearest, protocol.rules.trail)
+        if state.phase is MissionPhase.DRIVING and self._occupied_goal.reached(pose, scan):
+            protocol.end_mission(True)
+            return STANDSTILL
         self._notes = decision.notes
         if self._leader.remaining > 0.0:
             self._remaining = self._leader.remaining

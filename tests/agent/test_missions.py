@@ -97,6 +97,20 @@ def test_leader_after_leader_dies_and_the_rest_re_forms_and_arrives(open_field):
     assert outcome.collisions == 0
 
 
+@pytest.mark.parametrize("profile", ["team", "thesis"])
+def test_a_leader_cut_off_for_good_stands_on_the_goal_and_the_others_arrive_beside_it(
+    open_field, profile
+):
+    """It goes on alone (thesis 4.3) and gets there first; its place is never free again."""
+    outcome, _ = mission(
+        open_field, f"team.profile='{profile}'", "clock.limit_s=300.0", faults=(fault("cut", 20, 3),)
+    )
+    assert outcome.outcome == "arrived", outcome.reason
+    assert outcome.arrived == (1, 2, 3, 4, 5, 6)
+    assert outcome.sim_s < 200.0
+    assert outcome.collisions == 0
+
+
 def test_two_lost_followers_leave_a_diamond(open_field):
     """Thesis figure 4.21."""
     outcome, diary = mission(open_field, faults=(fault("kill", 20, 6, 1),))

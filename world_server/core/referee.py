@@ -13,6 +13,7 @@ from onehop.contracts.geometry import Pose
 from onehop.contracts.leadership import LeadershipHistory
 from onehop.contracts.messages import LeadershipTerm, Lost, Note, Outcome, Presence
 from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import beside_goal
 from onehop.contracts.team import Mode, Shape, Status, loss_in_words
 
 STILL = 0.02
@@ -58,6 +59,7 @@ class Referee:
 
     def __init__(self, scenario: Scenario) -> None:
         self._goal = scenario.goal
+        self._beside = beside_goal(scenario.goal, scenario.robot, scenario.planner)
         self._spacing = scenario.team.spacing
         self._robots = scenario.team.robots
         self._limit_ns = round(scenario.clock.limit_s * 1e9)
@@ -141,7 +143,7 @@ class Referee:
         return None
 
     def _arrival(self, now: TickSummary) -> str:
-        leaders = ", ".join(str(robot) for robot in self._leaders_at_goal(now))
+        leaders = ", ".join(str(one.robot) for one in self._leaders_at_goal(now))
         return f"robot {leaders} at the goal with {len(self._arrived(now))} of {len(self._robots)}"
 
     def _stop_reason(self, now: TickSummary) -> str:
@@ -156,20 +158,24 @@ class Referee:
     def _from_goal(self, pose: Pose) -> float:
         return math.hypot(pose.x - self._goal.x, pose.y - self._goal.y)
 
-    def _leaders_at_goal(self, now: TickSummary) -> list[int]:
-        reach = self._goal.tolerance + _MARGIN
-        return [
-            one.robot
-            for one in now.present
-            if one.robot in self._leadership.acting and self._from_goal(one.pose) <= reach
-        ]
+    def _leaders_at_goal(self, now: TickSummary) -> list[Presence]:
+        acting = self._leadership.acting
+        return [one for one in now.present if one.robot in acting and self._is_at_goal(one)]
+
+    def _is_at_goal(self, leader: Presence) -> bool:
+        """Whether a leader stands at the goal, or beside what occupies it and says that it arrived."""
+        says_so = self._last_notes.get(leader.robot) == "arrived"
+        reach = self._beside if says_so else self._goal.tolerance
+        return self._from_goal(leader.pose) <= reach + _MARGIN
 
     def _arrived(self, now: TickSummary) -> tuple[int, ...]:
         """Ids of those who obey a leader at the goal, are on its roster and within its formation."""
         arrived: list[int] = []
-        for leader in self._leaders_at_goal(now):
+        for front in self._leaders_at_goal(now):
+            leader = front.robot
             term = self._leadership.acting[leader]
-            reach = _extent(term, self._spacing) + self._goal.tolerance + _MARGIN
+            off = max(self._goal.tolerance, self._from_goal(front.pose))
+            reach = _extent(term, self._spacing) + off + _MARGIN
             for one in now.present:
                 status = now.statuses.get(one.robot)
                 obeys = status is not None and status.leader == leader
@@ -180,7 +186,8 @@ class Referee:
     def _loss(self, robot: int, now: TickSummary) -> Lost:
         if robot in self._departed:
             return self._departed[robot]
-        leaders = self._leaders_at_goal(now) or [term.leader for term in self._leadership.terms[-1:]]
+        leaders = [one.robot for one in self._leaders_at_goal(now)]
+        leaders = leaders or [term.leader for term in self._leadership.terms[-1:]]
         dropped = self._dropped(robot, leaders[0]) if leaders else None
         return dropped or Lost(robot=robot, at_s=now.time_ns / 1e9, why="did not arrive")
 
