@@ -6,20 +6,19 @@ CommandKind of a tick: hear (protocol), drive (planner when leading, tracking wh
 import math
 
 from onehop.contracts.arrays import Ranges
-from onehop.contracts.beams import Beams
 from onehop.contracts.briefings import Briefing
-from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map
+from onehop.contracts.geometry import Pose, Twist, to_map
 from onehop.contracts.ideal_link import THESIS_THRESHOLD_BPS, threshold_bps
 from onehop.contracts.messages import Action, Note, Percept
 from onehop.contracts.randomness import generator
 from onehop.contracts.team import Mode, Status
-from robot_agent.core.motion.follower import IN_POSITION, Follower
+from robot_agent.core.motion.detour import SlotTask
+from robot_agent.core.motion.follower import IN_POSITION
 from robot_agent.core.motion.gains import make_policy
-from robot_agent.core.motion.leader import Leader, PathfinderMaker
-from robot_agent.core.motion.safety import SafetyFilter
-from robot_agent.core.motion.tracking import sampled
+from robot_agent.core.motion.leader import LeaderDecision, PathfinderMaker, TeamView
+from robot_agent.core.motion.robot_motion import RobotMotion
 from robot_agent.core.motion.trail import behind
-from robot_agent.core.planning import make_pathfinder
+from robot_agent.core.planning import PlannerStatus, make_pathfinder
 from robot_agent.core.team.formation import Formation, formation
 from robot_agent.core.team.modes import ModeEvent
 from robot_agent.core.team.protocol import TeamProtocol
@@ -45,13 +44,7 @@ class Robot:
     def __init__(self, briefing: Briefing, make_pathfinder: PathfinderMaker = make_pathfinder) -> None:
         self._briefing = briefing
         rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
-        body, period = briefing.body, briefing.period_ns / NANOSECONDS
-        fan = Beams(body)
-        gains = sampled(briefing.gains, period)
-        dodge = tuple(float(share) for share in rng.random(64))
-        self._follower = Follower(body, gains, fan, dodge)
-        self._leader = Leader(briefing, gains, fan, make_pathfinder, rng)
-        self._safety = SafetyFilter(body, fan, period)
+        self._motion = RobotMotion(briefing, make_pathfinder, rng)
         self._threshold = required_throughput_bps(briefing)
         self._policy = make_policy(briefing.gains, self._threshold)
         self._protocol: TeamProtocol | None = None
@@ -83,10 +76,8 @@ class Robot:
             twist = self._lead(protocol, now_ns, pose, percept.scan, nearest)
         else:
             twist = self._follow(protocol, now_ns, pose, percept.scan, nearest)
-        blind = self._briefing.gains.reverse and not protocol.leading
-        twist = self._safety.filtered(twist, percept.scan, nearest, blind)
         if not (protocol.leading and protocol.mode is Mode.SETUP and twist.w):
-            protocol.speak(now_ns, self._told_pose(protocol, pose), self._leader.trail.points)
+            protocol.speak(now_ns, self._told_pose(protocol, pose), self._motion.trail.points)
         notes = (*self._notes, *protocol.take_notes())
         self._notes = []
         return Action(
@@ -138,24 +129,51 @@ class Robot:
         self._target = (goal.x, goal.y)
         self._error = self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
         self._in_position = True
-        self._follower.halt()
-        twist = self._leader.step(protocol, now_ns, pose, scan, nearest)
-        self._notes.extend(self._leader.notes)
-        if self._leader.remaining > 0.0:
-            self._remaining = self._leader.remaining
-        return twist
+        decision = self._motion.lead(pose, scan, nearest, self._team_view(protocol, now_ns))
+        if decision.remaining > 0.0:
+            self._remaining = decision.remaining
+        if protocol.mode not in (Mode.SETUP, Mode.STOPPED):
+            self._tell_team(protocol, decision)
+        return decision.twist
+
+    def _team_view(self, protocol: TeamProtocol, now_ns: int) -> TeamView:
+        """What this robot, as leader, knows of its team."""
+        leadership = protocol.leadership
+        reports = leadership.reports if leadership is not None else {}
+        asked_ns = leadership.opened_ns if leadership is not None else now_ns
+        return TeamView(
+            gathering=protocol.mode is Mode.SETUP,
+            members=protocol.members,
+            column=protocol.narrow,
+            reports={robot: (report.pose.x, report.pose.y) for robot, report in reports.items()},
+            reports_age=(now_ns - asked_ns) / NANOSECONDS,
+            announced=protocol.link.pose,
+            may_ask_for_room=protocol.open,
+        )
+
+    def _tell_team(self, protocol: TeamProtocol, decision: LeaderDecision) -> None:
+        """Hand the protocol what the leader wants of its team, and people what there is to know."""
+        self._notes.extend(decision.notes)
+        protocol.keep_clear(decision.lane, decision.lane_is_news)
+        if decision.column is not protocol.narrow:
+            protocol.narrow = decision.column
+            if decision.passage is not None:
+                protocol.note("narrow" if decision.column else "wide", passage=decision.passage)
+        if decision.status is not PlannerStatus.DRIVING:
+            protocol.phase = MissionPhase.FINAL
+            protocol.fire(ModeEvent.ARRIVED)
+            protocol.note("arrived" if decision.status is PlannerStatus.ARRIVED else "no_way")
 
     def _follow(
         self, protocol: TeamProtocol, now_ns: int, pose: Pose, scan: Ranges, nearest: float
     ) -> Twist:
-        self._leader.begin()
         self._measure(protocol, now_ns)
         link = protocol.link
         leader = link.pose
         if leader is None:
             self._in_position = False
             self._target = (pose.x, pose.y)
-            return STANDSTILL
+            return self._motion.follow(pose, scan, nearest, None)
         target = self._slot_pose(protocol, leader)
         self._target = (target.x, target.y)
         self._error = math.hypot(target.x - pose.x, target.y - pose.y)
@@ -163,22 +181,26 @@ class Robot:
         self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
         self._settle(protocol)
         if self._at_rest(protocol):
-            return STANDSTILL
-        if protocol.mode is Mode.GIVING_WAY:
-            return self._follower.draw_aside(pose, scan, link.lane)
-        moves = protocol.phase is MissionPhase.DRIVING
-        standoff = math.hypot(target.x - leader.x, target.y - leader.y)
-        twist = self._follower.step(
-            pose, scan, nearest, target, link.trail, standoff, moves, self._k_rho
+            return self._motion.follow(pose, scan, nearest, None)
+        makes_room = protocol.mode is Mode.GIVING_WAY
+        task = SlotTask(
+            slot=target,
+            trail=link.trail,
+            standoff=math.hypot(target.x - leader.x, target.y - leader.y),
+            leader_moves=protocol.phase is MissionPhase.DRIVING,
+            k_rho=self._k_rho,
+            lane=link.lane if makes_room else (),
         )
-        self._tell_border(protocol)
+        twist = self._motion.follow(pose, scan, nearest, task)
+        if not makes_room:
+            self._tell_border(protocol)
         return twist
 
     def _told_pose(self, protocol: TeamProtocol, pose: Pose) -> Pose:
         """What followers form up on: in profile `team` the course instead of the heading (trail.py)."""
         if not protocol.open or not protocol.leading or protocol.mode is Mode.SETUP:
             return pose
-        return Pose(pose.x, pose.y, self._leader.trail.course(pose))
+        return Pose(pose.x, pose.y, self._motion.trail.course(pose))
 
     def _slot_pose(self, protocol: TeamProtocol, leader: Pose) -> Pose:
         """This robot's slot in the map frame, from the leader's last pose."""
@@ -236,7 +258,7 @@ class Robot:
 
     def _tell_border(self, protocol: TeamProtocol) -> None:
         """Border following interrupts Algorithm 1 and resumes it (thesis 3.3.4)."""
-        border = self._follower.border
+        border = self._motion.border
         if border and protocol.mode in (Mode.FOLLOWING, Mode.NARROW):
             protocol.fire(ModeEvent.OBSTRUCTED)
         elif not border and protocol.mode is Mode.BORDER:

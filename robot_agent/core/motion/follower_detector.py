@@ -1,10 +1,10 @@
 """Which beams of a leader's laser hit its own followers, and what the scan would be without them.
 
-A planner that takes team mates for walls finds itself locked in by them, and one that leaves their beams
-out takes what they hide for a way on. So they are painted over: a wall on both sides of a mate goes on
-behind it. A follower is a disc of a robot's size in the scan, where the follower's last report lets it
-be by now; or it is whatever is seen right where a follower reported itself. Whatever is none of that
-stays an obstacle.
+A planner that takes followers for walls finds itself locked in by them, and one that leaves their beams
+out takes what they hide for a way on. So they are removed from the scan: a wall on both sides of a
+follower goes on behind it. A follower is a disc of a robot's size in the scan, where the follower's last
+report lets it be by now; or it is whatever is seen right where a follower reported itself. Whatever is
+none of that stays an obstacle.
 
 The disc is found by a matched filter: with the hull of a robot before every beam in turn, the ranges
 around it are known, and the scan must agree with them. So a robot is found beside a wall and half behind
@@ -18,16 +18,17 @@ import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts import elementary
-from onehop.contracts.arrays import FloatArray, Ranges
+from onehop.contracts.arrays import BoolArray, FloatArray, Ranges
 from onehop.contracts.beams import Beams
 from onehop.contracts.geometry import Pose, to_local
 from onehop.contracts.sections import RobotSection
+from robot_agent.core.motion.trail import Point
 
 HULL_ERROR = 0.05
 """How far a range may be from that of a disc [m]: its middle need not lie on a beam."""
 
 INNER = 0.85
-"""Share of the radius within which ranges are compared [1]: at the rim a disc falls off too fast."""
+"""Share of the radius within which ranges are compared: at the rim a disc falls off too fast."""
 
 LEAST_SEEN = 0.6
 """Share of the hull that must be seen; something nearer may hide the rest."""
@@ -35,73 +36,70 @@ LEAST_SEEN = 0.6
 OPEN_SIDE = 0.25
 """Change of range at one of the rims at least [m]: a flat wall far away looks like a flat hull."""
 
-LEAST_BEAMS = 3
-"""Beams that tell a disc from a post."""
-
-IntArray = npt.NDArray[np.intp]
-BoolArray = npt.NDArray[np.bool_]
+LEAST_HITS = 3
+"""Hits that tell a disc from a post, whatever the angle between them: two fit any disc."""
 
 AT_HAND = 0.1
 """A hit this near to the hull of a reported robot is that robot [m]."""
 
-
 SAME_WALL = 1.5
-"""Ratio of the ranges on both sides of a mate up to which they are taken for one wall."""
+"""Ratio of the ranges on both sides of a follower up to which they are taken for one wall."""
+
+IntArray = npt.NDArray[np.intp]
 
 
-def painted(scan: Ranges, mates: frozenset[int]) -> Ranges:
-    """The scan with these beams replaced by what their neighbours show.
+def without_followers(scan: Ranges, followers: BoolArray) -> Ranges:
+    """The scan with its followers removed: their beams show what those beside them do.
 
-    One wall on both sides goes on straight (in polar form it is linear in 1/range over a small angle);
-    of two things the farther one does, because it is the one that the mate stands in front of.
+    followers: (n_beams,) which beams hit one. A wall on both sides goes on straight (in polar form it is
+    linear in 1/range over a small angle); of two things the farther one does, because it is the one that
+    the follower stands in front of.
     """
-    if not mates:
+    hit, shown = np.flatnonzero(followers), np.flatnonzero(~followers)
+    if not len(hit):
         return scan
-    hidden = np.zeros(len(scan), dtype=np.bool_)
-    hidden[np.fromiter(mates, dtype=np.intp, count=len(mates))] = True
-    beams, shown = np.flatnonzero(hidden), np.flatnonzero(~hidden)
     clean = scan.copy()
     if not len(shown):
         clean[:] = np.inf
         return clean
     nearness = 1.0 / scan[shown]
-    between = np.interp(beams, shown, nearness)
-    place = np.searchsorted(shown, beams)
+    between = np.interp(hit, shown, nearness)
+    place = np.searchsorted(shown, hit)
     left, right = nearness[np.maximum(place - 1, 0)], nearness[np.minimum(place, len(shown) - 1)]
     least = np.minimum(left, right)
     one_wall = np.maximum(left, right) <= SAME_WALL * least
     with np.errstate(divide="ignore"):
-        clean[beams] = 1.0 / np.where(one_wall, between, least)
+        clean[hit] = 1.0 / np.where(one_wall, between, least)
     return clean
 
 
 class FollowerDetector:
     """Finds followers in scans."""
 
-    def __init__(self, body: RobotSection, fan: Beams) -> None:
+    def __init__(self, body: RobotSection, beams: Beams) -> None:
         self._radius = body.radius
-        self._range = fan.range
-        self._angles = fan.angles
-        self._directions = fan.directions
-        self._spacing = float(fan.angles[1] - fan.angles[0])
+        self._range = beams.range
+        self._directions = beams.directions
+        self._spacing = beams.spacing
+        steps = np.arange(math.floor(0.5 * math.pi / beams.spacing) + 1, dtype=np.float64)
+        self._sines: FloatArray = elementary.sines(steps * beams.spacing)
 
-    def beams(
-        self, pose: Pose, scan: Ranges, places: Sequence[tuple[float, float]], reach: float
-    ) -> frozenset[int]:
-        """Beams that hit a robot within `reach` of one of the places [m], map frame."""
+    def beams(self, pose: Pose, scan: Ranges, places: Sequence[Point], reach: float) -> BoolArray:
+        """Which beams hit a robot within `reach` of one of the places [m], map frame; (n_beams,)."""
+        found = np.zeros(len(scan), dtype=np.bool_)
         sight = self._range + reach
         own = [to_local(pose, x, y) for x, y in places]
         own = [(x, y) for x, y in own if x > -reach and math.hypot(x, y) < sight]
         seen = np.flatnonzero(scan <= self._range)
         if not own or not len(seen):
-            return frozenset()
+            return found
         nearest = seen[self._nearest(scan)[seen]]
         centres = self._directions[nearest] * (scan[nearest, None] + self._radius)
         possible = nearest[_apart(centres, np.array(own)) <= reach]
-        found = self._discs(scan, possible)
+        found[self._discs(scan, possible)] = True
         hits = self._directions[seen] * scan[seen, None]
-        at_hand = seen[_apart(hits, np.array(own)) <= self._radius + AT_HAND]
-        return frozenset(found.tolist()).union(at_hand.tolist())
+        found[seen[_apart(hits, np.array(own)) <= self._radius + AT_HAND]] = True
+        return found
 
     def _nearest(self, scan: Ranges) -> BoolArray:
         """Which beams see no farther than their neighbours, as one on the middle of a disc does."""
@@ -115,8 +113,9 @@ class FollowerDetector:
             return middles
         radius, count = self._radius, len(scan)
         far = scan[middles].astype(np.float64)[:, None] + radius
-        most = math.asin(min(1.0, radius / float(far.min())))
-        steps = np.arange(-int(most / self._spacing) - 1, int(most / self._spacing) + 2)
+        # from the middle of the nearest disc to the first beam beyond its rim
+        half_width = int(np.searchsorted(self._sines, radius / float(far.min()), side="right"))
+        steps = np.arange(-half_width, half_width + 1)
         off_middle = np.multiply(steps, self._spacing, dtype=np.float64)
         beside = far * elementary.sines(off_middle)
         hull = far * elementary.cosines(off_middle)
@@ -127,7 +126,7 @@ class FollowerDetector:
         off = ranges - hull
         inner = (np.abs(beside) <= INNER * radius) & in_view
         agrees = inner & (np.abs(off) <= HULL_ERROR)
-        enough = np.maximum(LEAST_SEEN * inner.sum(axis=1), LEAST_BEAMS)
+        enough = np.maximum(LEAST_SEEN * inner.sum(axis=1), LEAST_HITS)
         outside = (np.abs(beside) > radius) & (np.abs(beside) <= 2.0 * radius) & in_view
         free = (outside & (np.abs(ranges - scan[middles][:, None]) > OPEN_SIDE)).any(axis=1)
         disc = free & (agrees.sum(axis=1) >= enough) & ~(inner & (off > HULL_ERROR)).any(axis=1)

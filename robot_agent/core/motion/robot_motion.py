@@ -1,0 +1,97 @@
+"""All that moves one robot, and the one list of what may change a twist on its way to the wheels.
+
+A leader:
+
+1. Way-finding (leader.py, planning/) gives the twist. Its path tracking has a shield of its own: a step
+   that would come too near to an obstacle is not taken. It comes first because only the planner knows
+   another way when the shield holds; followers are removed from what it sees, so 3 to 6 must know them.
+2. While the team gathers the leader only turns to the goal, and at the end of its way it stands: 3 to 5
+   have no part in that.
+3. Lane (lane.py): while a follower stands right before the leader, which has asked for room, only the
+   turn remains. Before 4, so that waiting for room does not count as a jam.
+4. Jam (jam.py): a leader that gets nowhere among its followers steers around them. Before 5, because who
+   slows down in a jam stays in it.
+5. Stragglers (leader.py): the same arc, slower, if the scenario says so. Nothing may speed it up after.
+
+A follower:
+
+1. Without a leader, and at the end of the mission, it stands.
+2. Lane (lane.py): told to make room it draws aside, whatever is with its slot.
+3. Slot (follower.py): tracking in the open (tracking.py); otherwise around an obstacle, along the
+   leader's trail or out of a jam (detour.py, trail_pursuit.py, jam.py).
+
+Then, for both:
+
+6. Safety (safety.py) has the last word: nobody drives into what its laser sees. It only takes speed
+   away. Nothing may come after it that turns the robot otherwise or adds speed.
+7. The body: every stage keeps to what it can turn and drive by itself, because only the stage knows
+   whether to slow down or to bend the arc for it. The motors cut off the rest (world_server, World).
+"""
+
+import numpy as np
+
+from onehop.contracts.arrays import Ranges
+from onehop.contracts.beams import Beams
+from onehop.contracts.briefings import Briefing
+from onehop.contracts.geometry import STANDSTILL, Pose, Twist
+from robot_agent.core.motion.detour import SlotTask
+from robot_agent.core.motion.follower import FollowerMotion
+from robot_agent.core.motion.leader import LeaderDecision, LeaderMotion, PathfinderMaker, TeamView
+from robot_agent.core.motion.safety import SafetyFilter
+from robot_agent.core.motion.tracking import sampled
+from robot_agent.core.motion.trail import Trail
+
+DRAWS = 64
+"""Random numbers for a follower's jams, used in turn: more than any mission has seen jams of a robot."""
+
+
+class RobotMotion:
+    """Moves one robot, whichever part it plays: `lead` or `follow`, once a tick."""
+
+    def __init__(
+        self, briefing: Briefing, make_pathfinder: PathfinderMaker, rng: np.random.Generator
+    ) -> None:
+        body, period = briefing.body, briefing.period_ns / 1e9
+        beams = Beams(body)
+        gains = sampled(briefing.gains, period)
+        draws = tuple(float(share) for share in rng.random(DRAWS))
+        self._follower = FollowerMotion(body, gains, beams, period, draws)
+        self._leader = LeaderMotion(briefing, gains, beams, make_pathfinder, rng)
+        self._safety = SafetyFilter(body, beams, period)
+        self._followers_back_up = gains.reverse
+
+    @property
+    def trail(self) -> Trail:
+        """The way that this robot came while it led."""
+        return self._leader.trail
+
+    @property
+    def border(self) -> bool:
+        """Whether this robot, as a follower, goes along the border of an obstacle."""
+        return self._follower.border
+
+    def lead(self, pose: Pose, scan: Ranges, nearest: float, team: TeamView) -> LeaderDecision:
+        """A leader's twist for this tick, and what it wants of its team. nearest: least range [m]."""
+        self._follower.reset()
+        leader = self._leader
+        decision = leader.decide(pose, scan, team)
+        twist = decision.twist
+        if decision.waypoint is not None:
+            twist = (
+                leader.lane.held_back(twist)
+                or leader.jam.around(pose, scan, nearest, decision.waypoint)
+                or leader.slowed_for_stragglers(twist, team, decision.column)
+                or twist
+            )
+        return decision._replace(twist=self._safety.filtered(twist, scan, nearest))
+
+    def follow(self, pose: Pose, scan: Ranges, nearest: float, task: SlotTask | None) -> Twist:
+        """A follower's twist for this tick. task: None to stand. nearest: least range [m]."""
+        self._leader.begin()
+        if task is None:
+            twist = STANDSTILL
+        elif task.lane:
+            twist = self._follower.draw_aside(pose, scan, task.lane)
+        else:
+            twist = self._follower.to_slot(pose, scan, nearest, task)
+        return self._safety.filtered(twist, scan, nearest, self._followers_back_up)
