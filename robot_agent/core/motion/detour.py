@@ -28,7 +28,8 @@ HOLD = 0.1
 moves farther than 0.3 m meanwhile."""
 
 ON_THE_SPOT = 2
-"""A tick in which the robot only turned counts as this many: it is nearer to being stuck."""
+"""A tick in which the robot only turns counts as this many: it is nearer to being stuck. One in which it
+decides on a course counts as all those for which it holds it."""
 
 BLOCKED_AFTER, CLEAR_AFTER = 1.0, 0.4
 """Time after which an obstacle counts as in the way, and as passed [s]: no flutter of modes."""
@@ -150,12 +151,12 @@ class Detour:
             return self._steering.turn(course.bearing)
         choice = self._steering.free.choose(course.bearing, course.distance, course.side)
         if choice is None:
-            return self._jam.shut_in(counted)
+            return self._jam.shut_in(ON_THE_SPOT)
         direction, free = choice
         if self.border and self._side == 0:
             self._side = 1 if direction >= course.bearing else -1
         speed = stoppable(min(task.k_rho * course.left, self._max_speed), free)
-        self._jam.moved((pose.x, pose.y), counted)
+        self._jam.moved((pose.x, pose.y), self._hold)
         self._counted = self._hold
         if self._hold > 1:
             self._held, self._held_for = (pose.heading + direction, speed), self._hold - 1

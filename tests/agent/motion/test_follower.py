@@ -2,13 +2,14 @@
 
 import math
 
+import numpy as np
 import pytest
 
-from onehop.contracts.geometry import Pose
+from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.sections import GainsSection
 from robot_agent.core.motion.detour import SlotTask
 from robot_agent.core.motion.follower import FollowerMotion
-from tests.agent.motion.scans import BEAMS, BODY, GAINS, HERE, OPEN, PERIOD, block
+from tests.agent.motion.scans import BEAMS, BODY, GAINS, HERE, OPEN, PERIOD, block, moved
 
 
 def follower(period=PERIOD, gains=GAINS, draws=(0.3, 0.7)):
@@ -70,3 +71,22 @@ def test_a_course_around_an_obstacle_is_held_for_a_tenth_of_a_second(period, tic
     held = [driver.to_slot(turned, OPEN, 1.0, slot).w for _ in range(ticks)]
     assert all(w < 0.0 for w in held[:-1]), "as it was decided"
     assert held[-1] > 0.0, "decided anew: nothing is in the way any more"
+
+
+@pytest.mark.parametrize("period", [0.02, 0.05, 0.1])
+def test_a_robot_that_turns_to_and_fro_beside_a_wall_escapes_with_any_period(period):
+    """It heads for a point that it saw, now behind a wall that it is too near to: away from the wall,
+    and as that is too far from the point, back to it."""
+    driver, pose = follower(period, draws=(0.1,)), Pose(0.0, 0.0, 0.9)
+    task = SlotTask(Pose(8.0, -2.0, 0.0), ((3.4, -1.1),), 1.0, True, 1.0)
+    for _ in range(round(0.5 / period)):
+        driver.to_slot(Pose(0.0, 0.0, -0.3), OPEN, 1.0, task)
+    ticks = left = 0
+    while left * period < 0.35 and ticks * period < 20.0:
+        angles = BEAMS.angles + pose.heading
+        wall = np.where((angles > -1.6) & (angles < 0.6), 0.25, np.inf).astype(np.float32)
+        twist = driver.to_slot(pose, wall, 0.25, task)
+        left = left + 1 if twist.w > 0.0 else 0
+        pose = moved(pose, Twist(0.0, twist.w), period)
+        ticks += 1
+    assert ticks * period < 10.0
