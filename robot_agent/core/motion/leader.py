@@ -147,7 +147,8 @@ class LeaderMotion:
         share, announced = section.straggler_speed, team.announced
         if share >= 1.0 or announced is None:
             return None
-        for slot in formation(team.members, column, section.spacing).slots:
+        spacing = section.narrow_spacing if column else section.spacing
+        for slot in formation(team.members, column, spacing).slots:
             place = team.reports.get(slot.robot)
             if place is not None:
                 x, y = to_map(announced, slot.x, slot.y)

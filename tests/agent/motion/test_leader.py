@@ -135,3 +135,13 @@ def test_stragglers_slow_the_same_arc_down_if_the_scenario_says_so():
     assert motion.slowed_for_stragglers(twist, FOUR, False) is None, "nobody has reported yet"
     never, _ = leader()
     assert never.slowed_for_stragglers(twist, behind, False) is None
+
+
+def test_a_column_in_its_slots_holds_nobody_up():
+    """Its slots are a narrow spacing apart, not the spacing of the open shapes."""
+    motion, _ = leader(straggler_speed=0.4)
+    column = {robot: (-1.5 * place, 0.0) for place, robot in enumerate((1, 3, 4), start=1)}
+    team = FOUR._replace(reports=column)
+    assert motion.slowed_for_stragglers(Twist(1.0, 0.5), team, True) is None
+    left = team._replace(reports=column | {4: (-9.0, 0.0)})
+    assert motion.slowed_for_stragglers(Twist(1.0, 0.5), left, True) == Twist(0.4, 0.2)
