@@ -129,12 +129,13 @@ class Robot:
         self._target = (goal.x, goal.y)
         self._error = self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
         self._in_position = True
-        decision = self._motion.lead(pose, scan, nearest, self._team_view(protocol, now_ns))
+        team = self._team_view(protocol, now_ns)
+        twist, decision = self._motion.lead(pose, scan, nearest, team)
         if decision.remaining > 0.0:
             self._remaining = decision.remaining
         if protocol.mode not in (Mode.SETUP, Mode.STOPPED):
             self._tell_team(protocol, decision)
-        return decision.twist
+        return twist
 
     def _team_view(self, protocol: TeamProtocol, now_ns: int) -> TeamView:
         """What this robot, as leader, knows of its team."""

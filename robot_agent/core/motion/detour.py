@@ -11,11 +11,11 @@ lies inside a wall for a long time.
 """
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.geometry import Pose, Twist, wrap_angle
 from onehop.contracts.sections import RobotSection
+from onehop.contracts.values import Value
 from robot_agent.core.motion.free_directions import LOOKAHEAD
 from robot_agent.core.motion.jam import FollowerJam
 from robot_agent.core.motion.steering import TURN_IN_PLACE, Steering, stoppable
@@ -29,7 +29,7 @@ moves farther than 0.3 m meanwhile."""
 
 ON_THE_SPOT = 2
 """A tick in which the robot only turns counts as this many: it is nearer to being stuck. One in which it
-decides on a course counts as all those for which it holds it."""
+decides on a course counts as all those for which the course is held."""
 
 BLOCKED_AFTER, CLEAR_AFTER = 1.0, 0.4
 """Time after which an obstacle counts as in the way, and as passed [s]: no flutter of modes."""
@@ -38,7 +38,7 @@ WATCH_EVERY = 0.5
 """Time from one look for the leader's trail to the next while the way is clear [s]."""
 
 
-class SlotTask(NamedTuple):
+class SlotTask(Value, frozen=True):
     """Where a follower shall be, and what its leader told of the way there. Map frame, SI units.
 
     slot: pose to take. trail: the leader's way, oldest first. standoff: distance to keep from the leader
@@ -54,7 +54,7 @@ class SlotTask(NamedTuple):
     lane: Sequence[Point] = ()
 
 
-class Course(NamedTuple):
+class Course(Value, frozen=True):
     """What is headed for, as the robot sees it.
 
     bearing [rad], distance [m]: of the point. left: way that remains [m]. side: on which obstacles are
@@ -83,7 +83,7 @@ class Detour:
         self._clear_after = in_ticks(CLEAR_AFTER, period)
         self._watch_every = in_ticks(WATCH_EVERY, period)
         self._age = 0
-        self._counted = ON_THE_SPOT
+        self._since_look = ON_THE_SPOT  # ticks, as they count
         self._blocked_for = self._clear_for = 0
         self._side = 0
         self._held: tuple[float, float] | None = None
@@ -104,7 +104,7 @@ class Detour:
 
     def tracks(self) -> None:
         """The robot tracks its slot at this tick."""
-        self._counted = ON_THE_SPOT
+        self._since_look = ON_THE_SPOT
         self._jam.clear()
 
     def held(self, pose: Pose) -> Twist | None:
@@ -130,19 +130,19 @@ class Detour:
         seen = not self.border or free_directions.sees(bearing, distance)
         if free >= min(distance, LOOKAHEAD) and seen:
             self._blocked_for = 0
-            self._clear_for += self._counted
+            self._clear_for += self._since_look
             if self._clear_for >= self._clear_after:
                 self.border, self._side = False, 0
             return None if self.border else free
         self._clear_for = 0
-        self._blocked_for += self._counted
+        self._blocked_for += self._since_look
         self.border = self.border or self._blocked_for >= self._blocked_after
         return None
 
     def step(self, pose: Pose, distance: float, bearing: float, task: SlotTask) -> Twist:
         """Around the obstacle, or along its border. distance, bearing: of the slot [m, rad]."""
-        counted, self._counted = self._counted, ON_THE_SPOT
-        course = self._course(pose, distance, bearing, task, counted)
+        ticks, self._since_look = self._since_look, ON_THE_SPOT
+        course = self._course(pose, distance, bearing, task, ticks)
         if course is None:
             return self._steering.turn(bearing)
         if self._jam.escaping:
@@ -157,7 +157,7 @@ class Detour:
             self._side = 1 if direction >= course.bearing else -1
         speed = stoppable(min(task.k_rho * course.left, self._max_speed), free)
         self._jam.moved((pose.x, pose.y), self._hold)
-        self._counted = self._hold
+        self._since_look = self._hold
         if self._hold > 1:
             self._held, self._held_for = (pose.heading + direction, speed), self._hold - 1
         return self._steering.drive(direction, speed)

@@ -45,16 +45,11 @@ class FollowerMotion:
         self._body = body
         self._gains = gains
         self._steering = Steering(body, gains, beams)
-        self._detour = Detour(body, self._steering, period, draws)
-
-    @property
-    def border(self) -> bool:
-        """Whether the robot follows the border of an obstacle."""
-        return self._detour.border
+        self.detour = Detour(body, self._steering, period, draws)
 
     def reset(self) -> None:
         """Forget the obstacle in the way: the robot has another part now."""
-        self._detour.reset()
+        self.detour.reset()
 
     def draw_aside(self, pose: Pose, scan: Ranges, lane: Sequence[tuple[float, float]]) -> Twist:
         """Twist for this tick while the leader wants a lane kept clear."""
@@ -70,7 +65,7 @@ class FollowerMotion:
             self.reset()
             turn = wrap_angle(task.slot.heading - pose.heading)
             return self._steering.turn(turn) if abs(turn) > HEADING_TOLERANCE else STANDSTILL
-        detour = self._detour
+        detour = self.detour
         detour.watch_trail(pose, scan, task.trail)
         if not detour.border and nearest > min(LOOKAHEAD, distance + BEYOND_SLOT):
             return self._track(error, bearing, task.k_rho, LOOKAHEAD)
@@ -84,7 +79,7 @@ class FollowerMotion:
 
     def _track(self, error: PolarError, bearing: float, k_rho: float, free: float) -> Twist:
         """The way to the slot is clear for `free` metres: thesis eq. 3.11, 3.12."""
-        self._detour.tracks()
+        self.detour.tracks()
         body, gains = self._body, self._gains
         if error.reverse and gains.reverse:
             return within_limits(polar_twist(error, gains, k_rho, body.max_speed), body)

@@ -45,31 +45,36 @@ AT_HAND = 0.1
 SAME_WALL = 1.5
 """Ratio of the ranges on both sides of a follower up to which they are taken for one wall."""
 
-IntArray = npt.NDArray[np.intp]
+BeamNumbers = npt.NDArray[np.intp]
+"""Beams of a scan by their number, ascending."""
+
+NO_BEAMS: BeamNumbers = np.empty(0, dtype=np.intp)
 
 
-def without_followers(scan: Ranges, followers: BoolArray) -> Ranges:
+def without_followers(scan: Ranges, followers: BeamNumbers) -> Ranges:
     """The scan with its followers removed: their beams show what those beside them do.
 
-    followers: (n_beams,) which beams hit one. A wall on both sides goes on straight (in polar form it is
+    followers: (k,) beams that hit one. A wall on both sides goes on straight (in polar form it is
     linear in 1/range over a small angle); of two things the farther one does, because it is the one that
     the follower stands in front of.
     """
-    hit, shown = np.flatnonzero(followers), np.flatnonzero(~followers)
-    if not len(hit):
+    if not len(followers):
         return scan
+    beside = np.ones(len(scan), dtype=np.bool_)
+    beside[followers] = False
+    shown = np.flatnonzero(beside)
     clean = scan.copy()
     if not len(shown):
         clean[:] = np.inf
         return clean
     nearness = 1.0 / scan[shown]
-    between = np.interp(hit, shown, nearness)
-    place = np.searchsorted(shown, hit)
+    between = np.interp(followers, shown, nearness)
+    place = np.searchsorted(shown, followers)
     left, right = nearness[np.maximum(place - 1, 0)], nearness[np.minimum(place, len(shown) - 1)]
     least = np.minimum(left, right)
     one_wall = np.maximum(left, right) <= SAME_WALL * least
     with np.errstate(divide="ignore"):
-        clean[hit] = 1.0 / np.where(one_wall, between, least)
+        clean[followers] = 1.0 / np.where(one_wall, between, least)
     return clean
 
 
@@ -84,22 +89,24 @@ class FollowerDetector:
         steps = np.arange(math.floor(0.5 * math.pi / beams.spacing) + 1, dtype=np.float64)
         self._sines: FloatArray = elementary.sines(steps * beams.spacing)
 
-    def beams(self, pose: Pose, scan: Ranges, places: Sequence[Point], reach: float) -> BoolArray:
-        """Which beams hit a robot within `reach` of one of the places [m], map frame; (n_beams,)."""
-        found = np.zeros(len(scan), dtype=np.bool_)
+    def beams(self, pose: Pose, scan: Ranges, places: Sequence[Point], reach: float) -> BeamNumbers:
+        """The beams that hit a robot within `reach` of one of the places [m], map frame."""
         sight = self._range + reach
         own = [to_local(pose, x, y) for x, y in places]
         own = [(x, y) for x, y in own if x > -reach and math.hypot(x, y) < sight]
+        if not own:
+            return NO_BEAMS
         seen = np.flatnonzero(scan <= self._range)
-        if not own or not len(seen):
-            return found
+        if not len(seen):
+            return NO_BEAMS
         nearest = seen[self._nearest(scan)[seen]]
         centres = self._directions[nearest] * (scan[nearest, None] + self._radius)
         possible = nearest[_apart(centres, np.array(own)) <= reach]
+        found = np.zeros(len(scan), dtype=np.bool_)
         found[self._discs(scan, possible)] = True
         hits = self._directions[seen] * scan[seen, None]
         found[seen[_apart(hits, np.array(own)) <= self._radius + AT_HAND]] = True
-        return found
+        return np.flatnonzero(found)
 
     def _nearest(self, scan: Ranges) -> BoolArray:
         """Which beams see no farther than their neighbours, as one on the middle of a disc does."""
@@ -107,7 +114,7 @@ class FollowerDetector:
         nearest: BoolArray = (scan <= edged[:-2]) & (scan <= edged[2:])
         return nearest
 
-    def _discs(self, scan: Ranges, middles: IntArray) -> IntArray:
+    def _discs(self, scan: Ranges, middles: BeamNumbers) -> BeamNumbers:
         """Beams of all discs of a robot's size whose middle is seen by one of these beams."""
         if not len(middles):
             return middles
@@ -131,7 +138,7 @@ class FollowerDetector:
         free = (outside & (np.abs(ranges - scan[middles][:, None]) > OPEN_SIDE)).any(axis=1)
         disc = free & (agrees.sum(axis=1) >= enough) & ~(inner & (off > HULL_ERROR)).any(axis=1)
         rim = (np.abs(beside) <= 1.1 * radius) & in_view & (np.abs(off) <= radius)
-        found: IntArray = place[disc][rim[disc]]
+        found: BeamNumbers = place[disc][rim[disc]]
         return found
 
 

@@ -10,12 +10,11 @@ Other robots are obstacles like any other (thesis 3.1). Only the current scan is
 """
 
 import math
-from functools import reduce
 
 import numpy as np
 
 from onehop.contracts import elementary
-from onehop.contracts.arrays import BoolArray, FloatArray, Ranges
+from onehop.contracts.arrays import FloatArray, Ranges
 from onehop.contracts.beams import Beams
 from onehop.contracts.sections import RobotSection
 
@@ -49,9 +48,9 @@ disc covers at LOOKAHEAD, and this runs at every tick."""
 class FreeDirections:
     """Free directions of one scan. `look` first, then ask.
 
-    An obstacle at range r blocks every direction that passes nearer to it than a disc's radius R, and
-    stops the disc there after r - R. That is exact in the middle and cautious at the edges. With `apart`
-    the angle between obstacle and direction, it is in the way when r sin(apart) < R.
+    An obstacle at range r keeps a disc of radius R from every direction nearer to it than asin(R / r),
+    and stops it there after r - R. That is exact in the middle and cautious at the edges. Angles are
+    compared by their cosines, which are the same on every processor.
     """
 
     def __init__(self, body: RobotSection, beams: Beams) -> None:
@@ -62,12 +61,13 @@ class FreeDirections:
         self._angles: FloatArray = (
             beams.angles[: self._beams].reshape(bundles, self._bundle).mean(axis=1)
         )
-        self._ahead, self._left = elementary.cosines(self._angles), elementary.sines(self._angles)
         self._spacing = float(self._angles[1] - self._angles[0]) if bundles > 1 else math.pi
         half = math.radians(min(body.laser_fov_deg, 180.0)) / 2.0
         self.candidates: FloatArray = np.arange(-half, half + 1e-9, STEP)
-        self._apart: FloatArray = np.array([self._apart_from(float(c)) for c in self.candidates])
-        self._too_near = 1.0 + elementary.sin(TURN_AWAY)
+        self._ahead, self._left = elementary.cosines(self._angles), elementary.sines(self._angles)
+        self._facing: FloatArray = np.array([self._cosines(float(c)) for c in self.candidates])
+        self._behind = -elementary.sin(TURN_AWAY)
+        self._offsets = [slice(first, self._beams, self._bundle) for first in range(self._bundle)]
         self._ranges: FloatArray = np.full(bundles, LOOKAHEAD)
         self._near: Ranges = np.full(bundles, np.inf, np.float32)
         self._shadows: list[tuple[FloatArray, FloatArray] | None] = [None, None]
@@ -75,34 +75,32 @@ class FreeDirections:
 
     def look(self, scan: Ranges) -> None:
         """Take the scan of this tick."""
-        every = (scan[first : self._beams : self._bundle] for first in range(self._bundle))
-        self._near = reduce(np.minimum, every)
-        self._ranges = np.minimum(self._near, 2.0 * LOOKAHEAD, dtype=np.float64)
+        near = scan[self._offsets[0]]
+        for offset in self._offsets[1:]:
+            near = np.minimum(near, scan[offset])
+        self._near = near
+        self._ranges = np.minimum(near, 2.0 * LOOKAHEAD, dtype=np.float64)
         self._shadows = [None, None]
 
-    def _apart_from(self, bearing: float) -> FloatArray:
-        """How far each bundle points from a bearing, (bundles,): the sine of the angle between them,
-        and beyond a right angle one more than its cosine lies below 0, so that it still rises.
-        """
-        c, s = elementary.cos(bearing), elementary.sin(bearing)
-        along = c * self._ahead + s * self._left
-        beside = np.abs(c * self._left - s * self._ahead)
-        return np.where(along > 0.0, beside, 1.0 - along)
+    def _cosines(self, bearing: float) -> FloatArray:
+        """Cosines of the angles between a bearing and the bundles of beams."""
+        return elementary.cos(bearing) * self._ahead + elementary.sin(bearing) * self._left
 
     def _shadow(self, tight: bool) -> tuple[FloatArray, FloatArray]:
-        """For each bundle how far apart it blocks (see `_apart_from`), and after what distance [m]."""
+        """For each bundle of beams the cosine of half of what it blocks, and after how far [m]."""
         shadow = self._shadows[tight]
         if shadow is None:
             radius = self._radii[tight]
             ratio = radius / self._ranges
-            widths = np.where(ratio < 1.0, ratio, self._too_near)
+            squared = 1.0 - ratio * ratio
+            widths = np.where(squared > 0.0, np.sqrt(np.maximum(squared, 0.0)), self._behind)
             shadow = self._shadows[tight] = widths, self._ranges - radius
         return shadow
 
     def free_distance(self, bearing: float, tight: bool = False) -> float:
         """How far the robot could drive along a bearing [m], at most LOOKAHEAD."""
         widths, depths = self._shadow(tight)
-        in_way: BoolArray = self._apart_from(bearing) < widths
+        in_way = self._cosines(bearing) > widths
         return float(depths.min(where=in_way, initial=LOOKAHEAD))
 
     def sees(self, bearing: float, distance: float) -> bool:
@@ -121,7 +119,7 @@ class FreeDirections:
         need = min(NEEDED, distance)
         for tight in (False, True):
             widths, depths = self._shadow(tight)
-            free = np.where(self._apart < widths, depths, LOOKAHEAD).min(axis=1)
+            free = np.where(self._facing > widths, depths, LOOKAHEAD).min(axis=1)
             ok = free >= need
             if not ok.any():
                 continue

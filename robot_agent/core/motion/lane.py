@@ -14,9 +14,10 @@ import math
 from collections.abc import Sequence
 
 from onehop.contracts import elementary
-from onehop.contracts.arrays import BoolArray, Ranges
+from onehop.contracts.arrays import Ranges
 from onehop.contracts.beams import Beams
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
+from robot_agent.core.motion.follower_detector import BeamNumbers
 from robot_agent.core.motion.steering import Steering
 from robot_agent.core.motion.trail import Point
 
@@ -65,10 +66,10 @@ class LaneRequest:
         self._met_for = self._clear_for = self._asked_for = self._waited_for = 0.0
         self._pause = self._silent_for = 0.0
 
-    def watch(self, pose: Pose, scan: Ranges, followers: BoolArray, waypoint: Point) -> bool:
+    def watch(self, pose: Pose, scan: Ranges, followers: BeamNumbers, waypoint: Point) -> bool:
         """Take one tick; whether there is something to say at once.
 
-        followers: (n_beams,) which beams hit one. waypoint: where the leader is heading, map frame [m].
+        followers: (k,) beams that hit one. waypoint: where the leader is heading, map frame [m].
         """
         nearest = self._in_way(pose, scan, followers, waypoint)
         asked, wanted = bool(self.lane), self._wanted(nearest < MET_AHEAD)
@@ -99,9 +100,9 @@ class LaneRequest:
         self._pause = PAUSE if met else 0.0
         return False
 
-    def _in_way(self, pose: Pose, scan: Ranges, followers: BoolArray, waypoint: Point) -> float:
+    def _in_way(self, pose: Pose, scan: Ranges, followers: BeamNumbers, waypoint: Point) -> float:
         """How far ahead on the straight way to the waypoint the next follower is [m]; inf for none."""
-        if not followers.any():
+        if not len(followers):
             return math.inf
         bearing = elementary.atan2(waypoint[1] - pose.y, waypoint[0] - pose.x) - pose.heading
         off = self._angles[followers] - wrap_angle(bearing)

@@ -10,19 +10,23 @@ like a follower until it moves again (jam.py).
 
 import math
 from collections.abc import Callable, Mapping
-from typing import NamedTuple
 
 import numpy as np
 
 from onehop.contracts import elementary
-from onehop.contracts.arrays import BoolArray, Ranges
+from onehop.contracts.arrays import Ranges
 from onehop.contracts.beams import Beams
 from onehop.contracts.briefings import Briefing
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map, wrap_angle
 from onehop.contracts.messages import Note
 from onehop.contracts.sections import GainsSection
+from onehop.contracts.values import Value
 from robot_agent.core.motion.column import SMALLEST_SHAPE, ColumnWatch
-from robot_agent.core.motion.follower_detector import FollowerDetector, without_followers
+from robot_agent.core.motion.follower_detector import (
+    BeamNumbers,
+    FollowerDetector,
+    without_followers,
+)
 from robot_agent.core.motion.jam import LeaderJam
 from robot_agent.core.motion.lane import LaneRequest
 from robot_agent.core.motion.steering import Steering
@@ -39,7 +43,7 @@ REPORT_TOLERANCE = 1.0
 """A round thing this near to where a follower can be by its last report is that follower [m]."""
 
 
-class TeamView(NamedTuple):
+class TeamView(Value, frozen=True):
     """What a leader knows of its team at a tick. Map frame, SI units.
 
     gathering: its followers still form up around it. members: all, itself included. column: they drive
@@ -56,16 +60,16 @@ class TeamView(NamedTuple):
     may_ask_for_room: bool
 
 
-class LeaderDecision(NamedTuple):
-    """What a leader does at a tick, and what it wants of its team.
+class LeaderDecision(Value, frozen=True):
+    """What a leader is up to at a tick, and what it wants of its team.
 
-    remaining: way still to drive [m]. waypoint: where it is driving to; None while it gathers the team,
-    and at the end. column: the team shall drive in column. passage: the width [m] for which; None where
-    the team is too small for any other shape. lane: to be kept clear; lane_is_news: to be told at once.
-    notes: of its way-finding, for people.
+    planned: the twist that way-finding gave. remaining: way still to drive [m]. waypoint: where it is
+    driving to; None while it gathers the team, and at the end. column: the team shall drive in column.
+    passage: the width [m] for which; None where the team is too small for any other shape. lane: to be
+    kept clear; lane_is_news: to be told at once. notes: of its way-finding, for people.
     """
 
-    twist: Twist
+    planned: Twist
     status: PlannerStatus
     remaining: float
     waypoint: Point | None
@@ -130,7 +134,7 @@ class LeaderMotion:
             pose, scan, followers, guidance.waypoint
         )
         return LeaderDecision(
-            twist=guidance.twist,
+            planned=guidance.twist,
             status=self._status,
             remaining=self._remaining,
             waypoint=guidance.waypoint,
@@ -167,7 +171,7 @@ class LeaderMotion:
         """At the goal, or where all ways end."""
         return LeaderDecision(STANDSTILL, self._status, self._remaining, None, team.column, notes=notes)
 
-    def _followers(self, pose: Pose, scan: Ranges, team: TeamView) -> BoolArray:
-        """Which beams hit followers, as far as their reports say where they may be by now."""
+    def _followers(self, pose: Pose, scan: Ranges, team: TeamView) -> BeamNumbers:
+        """The beams that hit followers, as far as their reports say where they may be by now."""
         reach = self._briefing.body.max_speed * team.reports_age + REPORT_TOLERANCE
         return self._detector.beams(pose, scan, tuple(team.reports.values()), reach)

@@ -1,31 +1,32 @@
 """All that moves one robot, and the one list of what may change a twist on its way to the wheels.
 
-A leader:
+A leader (`RobotMotion.lead`):
 
-1. Way-finding (leader.py, planning/) gives the twist. Its path tracking has a shield of its own: a step
-   that would come too near to an obstacle is not taken. It comes first because only the planner knows
-   another way when the shield holds; followers are removed from what it sees, so 3 to 6 must know them.
-2. While the team gathers the leader only turns to the goal, and at the end of its way it stands: 3 to 5
-   have no part in that.
-3. Lane (lane.py): while a follower stands right before the leader, which has asked for room, only the
-   turn remains. Before 4, so that waiting for room does not count as a jam.
-4. Jam (jam.py): a leader that gets nowhere among its followers steers around them. Before 5, because who
-   slows down in a jam stays in it.
-5. Stragglers (leader.py): the same arc, slower, if the scenario says so. Nothing may speed it up after.
+L1. While the team gathers it only turns to the goal, and at the end of its way it stands (leader.py): L3
+    to L5 have no part in that.
+L2. Way-finding (planning/) gives the twist. Its path tracking has a shield of its own: a step that would
+    come too near to an obstacle is not taken, because only the planner knows another way. Followers are
+    removed from what it sees, so what knows of them comes after it. Of these the first that has a say
+    decides:
+L3. Lane (lane.py): while a follower stands right before a leader that has asked for room, only the turn
+    remains. Before L4, so that waiting for room does not count as a jam.
+L4. Jam (jam.py): a leader that gets nowhere among its followers steers around them. Before L5, because
+    who slows down in a jam stays in it.
+L5. Stragglers (leader.py): the same arc, slower, if the scenario says so.
 
-A follower:
+A follower (`RobotMotion.follow`), where the first that applies decides:
 
-1. Without a leader, and at the end of the mission, it stands.
-2. Lane (lane.py): told to make room it draws aside, whatever is with its slot.
-3. Slot (follower.py): tracking in the open (tracking.py); otherwise around an obstacle, along the
-   leader's trail or out of a jam (detour.py, trail_pursuit.py, jam.py).
+F1. Without a leader, and at the end of the mission, it stands.
+F2. Lane (lane.py): told to make room it draws aside, whatever its slot.
+F3. Slot (follower.py): tracking in the open (tracking.py), otherwise around what is in the way, along
+    the leader's trail, or out of a jam (detour.py, trail_pursuit.py, jam.py).
 
-Then, for both:
+Then both:
 
-6. Safety (safety.py) has the last word: nobody drives into what its laser sees. It only takes speed
-   away. Nothing may come after it that turns the robot otherwise or adds speed.
-7. The body: every stage keeps to what it can turn and drive by itself, because only the stage knows
-   whether to slow down or to bend the arc for it. The motors cut off the rest (world_server, World).
+B1. Safety (safety.py) has the last word: nobody drives into what its laser sees. It only takes speed
+    away. Nothing may come after it that turns the robot otherwise or adds speed.
+B2. The body: every stage before keeps to what it can turn and drive, because only the stage knows
+    whether to slow down or to bend the arc for it. The motors cut off the rest (world_server, World).
 """
 
 import numpy as np
@@ -68,14 +69,16 @@ class RobotMotion:
     @property
     def border(self) -> bool:
         """Whether this robot, as a follower, goes along the border of an obstacle."""
-        return self._follower.border
+        return self._follower.detour.border
 
-    def lead(self, pose: Pose, scan: Ranges, nearest: float, team: TeamView) -> LeaderDecision:
+    def lead(
+        self, pose: Pose, scan: Ranges, nearest: float, team: TeamView
+    ) -> tuple[Twist, LeaderDecision]:
         """A leader's twist for this tick, and what it wants of its team. nearest: least range [m]."""
         self._follower.reset()
         leader = self._leader
         decision = leader.decide(pose, scan, team)
-        twist = decision.twist
+        twist = decision.planned
         if decision.waypoint is not None:
             twist = (
                 leader.lane.held_back(twist)
@@ -83,7 +86,7 @@ class RobotMotion:
                 or leader.slowed_for_stragglers(twist, team, decision.column)
                 or twist
             )
-        return decision._replace(twist=self._safety.filtered(twist, scan, nearest))
+        return self._safety.filtered(twist, scan, nearest), decision
 
     def follow(self, pose: Pose, scan: Ranges, nearest: float, task: SlotTask | None) -> Twist:
         """A follower's twist for this tick. task: None to stand. nearest: least range [m]."""

@@ -9,10 +9,10 @@ the trail counts only for a robot that never saw any of it.
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
 
 from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, to_local
+from onehop.contracts.values import Value
 from robot_agent.core.motion.free_directions import LOOKAHEAD, FreeDirections
 from robot_agent.core.motion.timing import in_ticks
 from robot_agent.core.motion.trail import Point
@@ -34,7 +34,7 @@ ASTRAY = 5.0
 """So far from where the trail was in sight the robot goes back at once [m]."""
 
 
-class TrailPoint(NamedTuple):
+class TrailPoint(Value, frozen=True):
     """The point to head for, as the robot sees it [m, rad]. newest: of the trail. known: it is or was a
     moment ago in sight, so that the way to it is nearly straight."""
 

@@ -35,16 +35,16 @@ def test_an_obstacle_in_the_way_for_a_second_starts_border_following_and_no_flut
     driver, slot = follower(period), task(Pose(5.0, 0.0, 0.0))
     wall, second = block(-30, 30, 1.0), round(1.0 / period)
     blocked = 0
-    while not driver.border:
+    while not driver.detour.border:
         driver.to_slot(HERE, wall, 1.0, slot)
         blocked += 1
     assert 0.75 <= blocked * period <= 1.05
     for _ in range(second // 5):
         driver.to_slot(HERE, OPEN, math.inf, slot)
-    assert driver.border, "a clear look or two are not the clear"
+    assert driver.detour.border, "a clear look or two are not the clear"
     for _ in range(second // 2):
         driver.to_slot(HERE, OPEN, math.inf, slot)
-    assert not driver.border
+    assert not driver.detour.border
 
 
 def test_in_its_slot_a_robot_only_turns_to_the_leaders_heading():

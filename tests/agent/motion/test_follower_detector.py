@@ -9,12 +9,7 @@ from tests.agent.motion.scans import BEAMS, BODY, HERE, OPEN
 
 def found(scan, place, reach):
     """Beams that hit a follower that can be within `reach` of a place."""
-    return np.flatnonzero(FollowerDetector(BODY, BEAMS).beams(HERE, scan, [place], reach)).tolist()
-
-
-def beams(first, stop):
-    """A mask of the beams from first to before stop."""
-    return (np.arange(181) >= first) & (np.arange(181) < stop)
+    return FollowerDetector(BODY, BEAMS).beams(HERE, scan, [place], reach).tolist()
 
 
 def test_a_follower_is_told_from_a_wall_and_from_a_pillar_where_nobody_is():
@@ -46,8 +41,8 @@ def test_behind_a_follower_the_wall_goes_on_straight():
     scan = (3.0 / np.cos(BEAMS.angles.clip(-1.2, 1.2))).astype(np.float32)
     hidden = scan.copy()
     hidden[85:96] = 1.0
-    assert without_followers(hidden, beams(85, 96)) == pytest.approx(scan, rel=0.01)
-    assert without_followers(hidden, beams(0, 0)) is hidden
+    assert without_followers(hidden, np.arange(85, 96)) == pytest.approx(scan, rel=0.01)
+    assert without_followers(hidden, np.arange(0)) is hidden
 
 
 @pytest.mark.parametrize("far", [np.inf, 8.0])
@@ -56,4 +51,4 @@ def test_a_follower_before_a_gap_does_not_shut_it(far):
     scan[:88] = 3.0
     scan[96:] = far
     scan[88:96] = 1.0
-    assert without_followers(scan, beams(88, 96))[90] == pytest.approx(far)
+    assert without_followers(scan, np.arange(88, 96))[90] == pytest.approx(far)

@@ -23,13 +23,13 @@ from tests.agent.motion.scans import BEAMS, BODY, GAINS, HERE, OPEN, PERIOD, blo
 from tests.agent.team.team_net import TeamNet
 
 AHEAD, BESIDE = (6.0, 0.0), (0.0, 6.0)
-NOBODY = np.zeros(181, dtype=np.bool_)
+NOBODY = np.empty(0, dtype=np.intp)
 
 
 def one(bearing, distance):
-    """A scan with one follower in it [deg, m], and which beams hit it."""
+    """A scan with one follower in it [deg, m], and the beams that hit it."""
     scan = block(bearing - 3, bearing + 3, distance)
-    return scan, np.isfinite(scan)
+    return scan, np.flatnonzero(np.isfinite(scan))
 
 
 def watch(request, seconds, scan, followers, waypoint=AHEAD):

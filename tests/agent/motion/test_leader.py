@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from onehop.contracts.briefings import robot_briefing
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist
@@ -61,10 +62,10 @@ def test_while_the_team_gathers_the_leader_turns_to_the_goal_and_asks_for_no_way
     motion, way = leader()
     pose = HERE
     for _ in range(40):
-        decision = motion.decide(pose, OPEN, FOUR._replace(gathering=True))
-        assert decision.twist.v == 0.0
-        pose = moved(pose, decision.twist)
-    assert decision.twist == STANDSTILL
+        decision = motion.decide(pose, OPEN, replace(FOUR, gathering=True))
+        assert decision.planned.v == 0.0
+        pose = moved(pose, decision.planned)
+    assert decision.planned == STANDSTILL
     assert pose.heading == pytest.approx(0.5 * math.pi, abs=0.05)
     assert decision.waypoint is None
     assert decision.remaining == 20.0
@@ -75,7 +76,7 @@ def test_way_finding_does_not_see_a_follower_where_it_reported_itself():
     motion, way = leader()
     scan = block(-3, 3, 2.0)
     motion.decide(HERE, scan, FOUR)
-    motion.decide(HERE, scan, FOUR._replace(reports={4: (2.2, 0.0)}))
+    motion.decide(HERE, scan, replace(FOUR, reports={4: (2.2, 0.0)}))
     assert way.shown[0][90] == 2.0
     assert way.shown[1][90] == math.inf
 
@@ -87,7 +88,7 @@ def test_a_narrow_passage_makes_a_column_and_the_decision_says_how_wide_it_is():
     assert not decisions[0].column
     assert decisions[-1].column
     assert decisions[-1].passage == 3.0
-    alone = FOUR._replace(members=(2, 4), column=True)
+    alone = replace(FOUR, members=(2, 4), column=True)
     assert motion.decide(HERE, OPEN, alone).passage is None, "not for the passage's sake"
 
 
@@ -97,11 +98,11 @@ def test_at_the_end_of_its_way_a_leader_stands_for_good_and_says_so_once(status)
     assert motion.decide(HERE, OPEN, FOUR).status is PlannerStatus.DRIVING
     way.say(progress=status, remaining=0.3, notes=(Note("no_way", {}),))
     ended = motion.decide(HERE, OPEN, FOUR)
-    assert (ended.twist, ended.status, ended.remaining) == (STANDSTILL, status, 0.3)
+    assert (ended.planned, ended.status, ended.remaining) == (STANDSTILL, status, 0.3)
     assert ended.notes == (Note("no_way", {}),)
     shown = len(way.shown)
     later = motion.decide(HERE, OPEN, FOUR)
-    assert (later.twist, later.status, later.remaining, later.notes) == (STANDSTILL, status, 0.3, ())
+    assert (later.planned, later.status, later.remaining, later.notes) == (STANDSTILL, status, 0.3, ())
     assert len(way.shown) == shown, "the way has ended"
 
 
@@ -119,7 +120,7 @@ def test_another_leadership_starts_with_another_way_and_another_trail():
 def test_a_leader_asks_for_room_only_where_the_profile_has_such_an_order():
     for allowed, lane in ((True, ((0.0, 0.0), (4.0, 0.0))), (False, ())):
         motion, _ = leader()
-        team = FOUR._replace(reports={4: (1.7, 0.0)}, may_ask_for_room=allowed)
+        team = replace(FOUR, reports={4: (1.7, 0.0)}, may_ask_for_room=allowed)
         decisions = [motion.decide(HERE, block(-6, 6, 1.5), team) for _ in range(12)]
         assert decisions[-1].lane == lane
         assert any(decision.lane_is_news for decision in decisions) is allowed
@@ -127,8 +128,8 @@ def test_a_leader_asks_for_room_only_where_the_profile_has_such_an_order():
 
 def test_stragglers_slow_the_same_arc_down_if_the_scenario_says_so():
     twist = Twist(1.0, 0.5)
-    behind = FOUR._replace(reports={1: (-20.0, 0.0)})
-    here = FOUR._replace(reports={1: (-2.8, -2.8)})
+    behind = replace(FOUR, reports={1: (-20.0, 0.0)})
+    here = replace(FOUR, reports={1: (-2.8, -2.8)})
     motion, _ = leader(straggler_speed=0.4)
     assert motion.slowed_for_stragglers(twist, behind, False) == Twist(0.4, 0.2)
     assert motion.slowed_for_stragglers(twist, here, False) is None
@@ -141,7 +142,7 @@ def test_a_column_in_its_slots_holds_nobody_up():
     """Its slots are a narrow spacing apart, not the spacing of the open shapes."""
     motion, _ = leader(straggler_speed=0.4)
     column = {robot: (-1.5 * place, 0.0) for place, robot in enumerate((1, 3, 4), start=1)}
-    team = FOUR._replace(reports=column)
+    team = replace(FOUR, reports=column)
     assert motion.slowed_for_stragglers(Twist(1.0, 0.5), team, True) is None
-    left = team._replace(reports=column | {4: (-9.0, 0.0)})
+    left = replace(team, reports=column | {4: (-9.0, 0.0)})
     assert motion.slowed_for_stragglers(Twist(1.0, 0.5), left, True) == Twist(0.4, 0.2)

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from msgspec.structs import replace
 
 from onehop.contracts.briefings import robot_briefing
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist
@@ -38,7 +39,7 @@ def motion(straggler_speed=1.0):
 def lead(robot, team, seconds, scan, pose=HERE):
     """The twists of a leader that is held where it stands."""
     nearest = float(scan.min())
-    return [robot.lead(pose, scan, nearest, team).twist for _ in range(round(seconds / PERIOD))]
+    return [robot.lead(pose, scan, nearest, team)[0] for _ in range(round(seconds / PERIOD))]
 
 
 def test_in_the_open_the_way_findings_twist_comes_to_the_wheels():
@@ -48,7 +49,7 @@ def test_in_the_open_the_way_findings_twist_comes_to_the_wheels():
 
 def test_a_leader_waits_for_room_before_it_takes_itself_for_jammed():
     robot, way = motion()
-    twists = lead(robot, FOUR._replace(reports=MET), 6.0, block(-10, 10, 0.9))
+    twists = lead(robot, replace(FOUR, reports=MET), 6.0, block(-10, 10, 0.9))
     waits = [k for k, twist in enumerate(twists) if twist == Twist(0.0, way.guidance.twist.w)]
     around = [k for k, twist in enumerate(twists) if abs(twist.w) > 1.0]
     assert len(waits) == pytest.approx(3.0 / PERIOD, abs=2)
@@ -58,7 +59,7 @@ def test_a_leader_waits_for_room_before_it_takes_itself_for_jammed():
 
 def test_a_leader_in_a_jam_does_not_slow_down_for_those_who_jam_it():
     robot, _ = motion(straggler_speed=0.1)
-    team = FOUR._replace(reports={1: (-20.0, 0.0)}, may_ask_for_room=False)
+    team = replace(FOUR, reports={1: (-20.0, 0.0)}, may_ask_for_room=False)
     twists = lead(robot, team, 2.5, block(30, 60, 0.9))
     assert twists[0].v == pytest.approx(0.1)
     assert max(twist.v for twist in twists) > 0.3
@@ -80,7 +81,7 @@ def test_a_follower_stands_without_a_task_and_draws_out_of_a_lane_whatever_its_s
     task = SlotTask(Pose(9.0, 0.0, 0.0), (), 4.0, True, 1.0)
     assert robot.follow(HERE, OPEN, math.inf, task).v > 1.0
     lane = ((-1.0, 2.0), (-1.0, -2.0))
-    aside = robot.follow(HERE, OPEN, math.inf, task._replace(lane=lane))
+    aside = robot.follow(HERE, OPEN, math.inf, replace(task, lane=lane))
     assert aside.v == pytest.approx(1.0)
-    beside = task._replace(lane=((-2.0, 2.0), (-2.0, -2.0)))
+    beside = replace(task, lane=((-2.0, 2.0), (-2.0, -2.0)))
     assert robot.follow(HERE, OPEN, math.inf, beside) == STANDSTILL
