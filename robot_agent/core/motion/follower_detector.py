@@ -85,9 +85,10 @@ class FollowerDetector:
         self._radius = body.radius
         self._range = beams.range
         self._directions = beams.directions
-        self._spacing = beams.spacing
-        steps = np.arange(math.floor(0.5 * math.pi / beams.spacing) + 1, dtype=np.float64)
-        self._sines: FloatArray = elementary.sines(steps * beams.spacing)
+        self._quarter = math.floor(0.5 * math.pi / beams.spacing)
+        steps = np.arange(-self._quarter - 1, self._quarter + 2) * np.float64(beams.spacing)
+        self._sines: FloatArray = elementary.sines(steps)
+        self._cosines: FloatArray = elementary.cosines(steps)
 
     def beams(self, pose: Pose, scan: Ranges, places: Sequence[Point], reach: float) -> BeamNumbers:
         """The beams that hit a robot within `reach` of one of the places [m], map frame."""
@@ -121,23 +122,23 @@ class FollowerDetector:
         radius, count = self._radius, len(scan)
         far = scan[middles].astype(np.float64)[:, None] + radius
         # from the middle of the nearest disc to the first beam beyond its rim
-        half_width = int(np.searchsorted(self._sines, radius / float(far.min()), side="right"))
-        steps = np.arange(-half_width, half_width + 1)
-        off_middle = np.multiply(steps, self._spacing, dtype=np.float64)
-        beside = far * elementary.sines(off_middle)
-        hull = far * elementary.cosines(off_middle)
+        rising = self._sines[self._quarter + 1 : -1]
+        reach = int(np.searchsorted(rising, radius / float(far.min()), side="right"))
+        steps = np.arange(-reach, reach + 1)
+        angles = slice(self._quarter + 1 - reach, self._quarter + 2 + reach)
+        beside, hull = np.abs(far * self._sines[angles]), far * self._cosines[angles]
         hull -= np.sqrt(np.maximum(0.0, radius * radius - beside * beside))
         place = middles[:, None] + steps
         in_view = (place >= 0) & (place < count)
         ranges = np.where(in_view, scan[np.clip(place, 0, count - 1)], np.inf)
         off = ranges - hull
-        inner = (np.abs(beside) <= INNER * radius) & in_view
+        inner = (beside <= INNER * radius) & in_view
         agrees = inner & (np.abs(off) <= HULL_ERROR)
         enough = np.maximum(LEAST_SEEN * inner.sum(axis=1), LEAST_HITS)
-        outside = (np.abs(beside) > radius) & (np.abs(beside) <= 2.0 * radius) & in_view
+        outside = (beside > radius) & (beside <= 2.0 * radius) & in_view
         free = (outside & (np.abs(ranges - scan[middles][:, None]) > OPEN_SIDE)).any(axis=1)
         disc = free & (agrees.sum(axis=1) >= enough) & ~(inner & (off > HULL_ERROR)).any(axis=1)
-        rim = (np.abs(beside) <= 1.1 * radius) & in_view & (np.abs(off) <= radius)
+        rim = (beside <= 1.1 * radius) & in_view & (np.abs(off) <= radius)
         found: BeamNumbers = place[disc][rim[disc]]
         return found
 
