@@ -6,21 +6,18 @@ Order of a tick: hear (team protocol), drive (as leader or as follower), speak.
 import math
 
 from onehop.contracts.arrays import Ranges
-from onehop.contracts.beams import Beams
 from onehop.contracts.briefings import Briefing
-from onehop.contracts.geometry import STANDSTILL, Pose, Twist
+from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.ideal_link import THESIS_THRESHOLD_BPS, threshold_bps
 from onehop.contracts.messages import Action, Note, Percept
 from onehop.contracts.randomness import generator
 from onehop.contracts.team import Mode, Status
 from onehop.contracts.units import NANOSECONDS
-from robot_agent.core.motion.follower import Follower
+from robot_agent.core.motion.detour import SlotTask
 from robot_agent.core.motion.gains import make_policy
-from robot_agent.core.motion.leader import Leader, PathfinderMaker
-from robot_agent.core.motion.occupied_goal import OccupiedGoal
-from robot_agent.core.motion.safety import SafetyFilter
+from robot_agent.core.motion.leader import PathfinderMaker, TeamView
+from robot_agent.core.motion.robot_motion import RobotMotion
 from robot_agent.core.motion.slot import Settling, shape_in_force, slot_pose
-from robot_agent.core.motion.tracking import sampled
 from robot_agent.core.planning import PlannerStatus, make_pathfinder
 from robot_agent.core.team.events import BecameFollower, BecameLeader, NextMeasured, TeamEvent
 from robot_agent.core.team.leader_view import LeaderView
@@ -44,15 +41,8 @@ class Robot:
     def __init__(self, briefing: Briefing, make_pathfinder: PathfinderMaker = make_pathfinder) -> None:
         self._briefing = briefing
         rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
-        body, period = briefing.body, briefing.period_ns / NANOSECONDS
-        beams = Beams(body)
-        gains = sampled(briefing.gains, period)
-        dodge = tuple(float(share) for share in rng.random(64))
-        self._follower = Follower(body, gains, beams, dodge)
-        self._leader = Leader(briefing, gains, beams, make_pathfinder, rng)
-        self._safety = SafetyFilter(body, beams, period)
-        self._occupied_goal = OccupiedGoal(briefing, beams)
-        self._settling = Settling(period)
+        self._motion = RobotMotion(briefing, make_pathfinder, rng)
+        self._settling = Settling(briefing.period_ns / NANOSECONDS)
         self._threshold = required_throughput_bps(briefing)
         self._protocol: TeamProtocol | None = None
         self._in_position = False
@@ -78,12 +68,10 @@ class Robot:
             twist = self._lead(protocol, part, now_ns, pose, scan, nearest)
         else:
             twist = self._follow(protocol, part.leader, pose, scan, nearest)
-        blind = self._briefing.gains.reverse and not isinstance(part, Leading)
-        twist = self._safety.filtered(twist, scan, nearest, blind)
         leads = isinstance(part, Leading)
         if not (leads and protocol.state.mode is Mode.SETUP and twist.w):
             told = self._told_pose(protocol, pose) if leads else pose
-            protocol.speak(now_ns, told, self._leader.trail.points)
+            protocol.speak(now_ns, told, self._motion.trail.points)
         return Action(
             tick=percept.tick,
             incarnation=self._briefing.incarnation,
@@ -118,10 +106,8 @@ class Robot:
 
     def _on_event(self, event: TeamEvent) -> None:
         """Each change of part starts afresh; each Next that was due counts for k_rho (thesis 3.5)."""
-        if isinstance(event, BecameLeader):
-            self._leader.begin()
-            self._follower.halt()
-        elif isinstance(event, BecameFollower):
+        if isinstance(event, BecameLeader | BecameFollower):
+            self._motion.begin_part()
             self._reset_gain()
         else:
             self._throughput = event.throughput_bps if isinstance(event, NextMeasured) else 0.0
@@ -142,24 +128,35 @@ class Robot:
         scan: Ranges,
         nearest: float,
     ) -> Twist:
-        goal = self._briefing.goal
+        goal, mode = self._briefing.goal, protocol.state.mode
         self._target = (goal.x, goal.y)
         self._error = self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
         self._in_position = True
-        state = protocol.state
-        decision = self._leader.step(state, part, now_ns, pose, scan, nearest, protocol.rules.trail)
-        if state.phase is MissionPhase.DRIVING and self._occupied_goal.reached(pose, scan):
-            protocol.end_mission(True)
-            return STANDSTILL
-        self._notes = decision.notes
-        if self._leader.remaining > 0.0:
-            self._remaining = self._leader.remaining
-        if decision.status is PlannerStatus.DRIVING:
-            protocol.order_column(decision.narrow, decision.passage)
+        team = self._team_view(protocol, part, now_ns)
+        twist, decision = self._motion.lead(pose, scan, nearest, team)
+        if decision.remaining > 0.0:
+            self._remaining = decision.remaining
+        if mode not in (Mode.SETUP, Mode.STOPPED):
+            self._notes = decision.notes
+            protocol.order_column(decision.column, decision.passage)
             protocol.keep_clear(decision.lane, decision.lane_is_news)
-        else:
-            protocol.end_mission(decision.status is PlannerStatus.ARRIVED)
-        return decision.twist
+            if decision.status is not PlannerStatus.DRIVING:
+                protocol.end_mission(decision.status is PlannerStatus.ARRIVED)
+        return twist
+
+    def _team_view(self, protocol: TeamProtocol, part: Leading, now_ns: int) -> TeamView:
+        """What this robot, as leader, knows of its team."""
+        state = protocol.state
+        reports = part.ledger.reports
+        return TeamView(
+            gathering=state.mode is Mode.SETUP,
+            members=state.roster.members,
+            column=state.narrow,
+            reports={robot: (report.pose.x, report.pose.y) for robot, report in reports.items()},
+            reports_age=(now_ns - part.schedule.commanded_ns) / NANOSECONDS,
+            announced=part.told,
+            may_ask_for_room=protocol.rules.trail,
+        )
 
     def _follow(
         self, protocol: TeamProtocol, view: LeaderView, pose: Pose, scan: Ranges, nearest: float
@@ -168,7 +165,7 @@ class Robot:
         if leader is None:
             self._in_position = False
             self._target = (pose.x, pose.y)
-            return STANDSTILL
+            return self._motion.follow(pose, scan, nearest, None)
         target = slot_pose(state, self._briefing.team, view, leader)
         goal = self._briefing.goal
         self._target = (target.x, target.y)
@@ -177,22 +174,26 @@ class Robot:
         self._error = self._settling.error
         self._in_position = self._is_in_position()
         if self._is_at_rest(protocol):
-            return STANDSTILL
-        if state.mode is Mode.GIVING_WAY:
-            return self._follower.draw_aside(pose, scan, view.lane)
-        moves = state.phase is MissionPhase.DRIVING
-        standoff = math.hypot(target.x - leader.x, target.y - leader.y)
-        twist = self._follower.step(
-            pose, scan, nearest, target, view.trail, standoff, moves, self._k_rho
+            return self._motion.follow(pose, scan, nearest, None)
+        makes_room = state.mode is Mode.GIVING_WAY
+        task = SlotTask(
+            slot=target,
+            trail=view.trail,
+            standoff=math.hypot(target.x - leader.x, target.y - leader.y),
+            leader_moves=state.phase is MissionPhase.DRIVING,
+            k_rho=self._k_rho,
+            lane=view.lane if makes_room else (),
         )
-        protocol.report_border(self._follower.border)
+        twist = self._motion.follow(pose, scan, nearest, task)
+        if not makes_room:
+            protocol.report_border(self._motion.border)
         return twist
 
     def _told_pose(self, protocol: TeamProtocol, pose: Pose) -> Pose:
         """What followers form up on: in profile `team` the course instead of the heading (trail.py)."""
         if not protocol.rules.trail or protocol.state.mode is Mode.SETUP:
             return pose
-        return Pose(pose.x, pose.y, self._leader.trail.course(pose))
+        return Pose(pose.x, pose.y, self._motion.trail.course(pose))
 
     def _is_in_position(self) -> bool:
         """Whether the robot is in its slot, or as near to it as it can get.

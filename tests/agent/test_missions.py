@@ -168,7 +168,7 @@ def test_a_leader_slows_down_for_a_straggler_if_the_scenario_says_so(open_field)
 @pytest.mark.parametrize(
     ("number", "seed"),
     [(3, 15), (3, 16), (3, 11), (2, 8)],
-    ids=["a pocket", "a passage", "a corner with a mate behind it", "pinned beside a wall"],
+    ids=["a pocket", "a passage", "a corner with a follower behind it", "pinned beside a wall"],
 )
 def test_a_leader_that_meets_its_own_team_gets_everyone_out(number, seed):
     outcome, _ = mission(SCENARIOS / f"map{number}.toml", f"seed={seed}")

@@ -1,1 +1,1 @@
-"""From where a robot should be to a twist: tracking, steering, borders, lanes, safety."""
+"""How a robot moves: from where it should be to a twist. The list of what has a say: robot_motion.py."""

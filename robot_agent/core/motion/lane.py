@@ -13,15 +13,13 @@ Ours; the thesis has no such order, and profile `thesis` does not use it.
 import math
 from collections.abc import Sequence
 
-import numpy as np
-
 from onehop.contracts import elementary
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.beams import Beams
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
-from onehop.contracts.sections import GainsSection, RobotSection
-from robot_agent.core.motion.steering import LOOKAHEAD, Steering
-from robot_agent.core.motion.tracking import turn_towards
+from robot_agent.core.motion.follower_detector import BeamNumbers
+from robot_agent.core.motion.steering import Steering
+from robot_agent.core.motion.trail import Point
 
 LENGTH = 4.0
 """Piece of the leader's way that is to be kept clear, from where it stands [m]."""
@@ -31,13 +29,13 @@ HALF_WIDTH = 1.2
 than lets a robot stand between the lane and the wall of a passage of 3.5 m."""
 
 MET_AHEAD, MET_BESIDE = 2.0, 0.8
-"""A mate is in the way when it is this far ahead and this little beside the way, at most [m]."""
+"""A follower is in the way when it is this far ahead and this little beside the way, at most [m]."""
 
 CLOSE = 1.2
-"""The leader waits for a mate in its way that is nearer than this [m]."""
+"""The leader waits for a follower in its way that is nearer than this [m]."""
 
 ASK_AFTER, CLEAR_AFTER = 0.4, 1.0
-"""Time for which a mate is, or none is any more, in the way before the order changes [s]."""
+"""Time for which a follower is, or none is any more, in the way before the order changes [s]."""
 
 LONGEST, PAUSE, LONGEST_WAIT = 12.0, 6.0, 3.0
 """How long a lane is asked for at most, how long not again then, how long the leader waits [s]."""
@@ -45,24 +43,19 @@ LONGEST, PAUSE, LONGEST_WAIT = 12.0, 6.0, 3.0
 REPEAT = 1.0
 """A lane that is asked for is told anew after this time, because the leader moves [s]."""
 
-FACING = 1.2
-"""A bearing greater than this is turned to on the spot [rad]."""
+TOP_SPEED = 1.0
+"""Speed at which a robot draws aside, at most [m/s]: it has a metre to go, among others who do too."""
 
-HURRY = 1.0
-"""Speed at which a robot draws aside, at most [m/s]."""
-
-REACTION = 0.4
-"""It drives at most as fast as lets it stop within this time before what it sees [s]."""
-
-Point = tuple[float, float]
+ON_LANE = 1e-3
+"""Nearer to the middle of the lane than this there is no side to draw to [m]: the left one is taken."""
 
 
 class LaneRequest:
     """The leader's side: when it asks for a lane, and which."""
 
-    def __init__(self, fan: Beams, period: float) -> None:
+    def __init__(self, beams: Beams, period: float) -> None:
         """period: of a tick [s]."""
-        self._angles = fan.angles
+        self._angles = beams.angles
         self._period = period
         self.begin()
 
@@ -73,12 +66,12 @@ class LaneRequest:
         self._met_for = self._clear_for = self._asked_for = self._waited_for = 0.0
         self._pause = self._silent_for = 0.0
 
-    def watch(self, pose: Pose, scan: Ranges, mates: frozenset[int], waypoint: Point) -> bool:
+    def watch(self, pose: Pose, scan: Ranges, followers: BeamNumbers, waypoint: Point) -> bool:
         """Take one tick; whether there is something to say at once.
 
-        mates: beams that hit followers. waypoint: where the leader is heading, map frame [m].
+        followers: (k,) beams that hit one. waypoint: where the leader is heading, map frame [m].
         """
-        nearest = self._in_way(pose, scan, mates, waypoint)
+        nearest = self._in_way(pose, scan, followers, waypoint)
         asked, wanted = bool(self.lane), self._wanted(nearest < MET_AHEAD)
         self.lane = _piece(pose, waypoint) if wanted else ()
         self._silent_for += self._period
@@ -89,8 +82,12 @@ class LaneRequest:
         self._waited_for += self._period if self.wait else 0.0
         return say
 
+    def held_back(self, twist: Twist) -> Twist | None:
+        """Only the turn of a twist, while the leader waits for a follower to draw aside; else None."""
+        return Twist(0.0, twist.w) if self.wait else None
+
     def _wanted(self, met: bool) -> bool:
-        """Whether a lane is to be asked for now. met: a mate is in the way."""
+        """Whether a lane is to be asked for now. met: a follower is in the way."""
         self._met_for = self._met_for + self._period if met else 0.0
         self._clear_for = 0.0 if met else self._clear_for + self._period
         self._pause = max(0.0, self._pause - self._period)
@@ -103,49 +100,29 @@ class LaneRequest:
         self._pause = PAUSE if met else 0.0
         return False
 
-    def _in_way(self, pose: Pose, scan: Ranges, mates: frozenset[int], waypoint: Point) -> float:
-        """How far ahead on the straight way to the waypoint the next mate is [m]; inf for none."""
-        if not mates:
+    def _in_way(self, pose: Pose, scan: Ranges, followers: BeamNumbers, waypoint: Point) -> float:
+        """How far ahead on the straight way to the waypoint the next follower is [m]; inf for none."""
+        if not len(followers):
             return math.inf
-        beams = np.fromiter(mates, dtype=np.intp, count=len(mates))
         bearing = elementary.atan2(waypoint[1] - pose.y, waypoint[0] - pose.x) - pose.heading
-        off = self._angles[beams] - wrap_angle(bearing)
-        ahead, beside = (
-            scan[beams] * elementary.cosines(off),
-            scan[beams] * np.abs(elementary.sines(off)),
-        )
+        off = self._angles[followers] - wrap_angle(bearing)
+        ahead = scan[followers] * elementary.cosines(off)
+        beside = scan[followers] * abs(elementary.sines(off))
         return float(ahead.min(where=(ahead > 0.0) & (beside < MET_BESIDE), initial=math.inf))
 
 
-class DrawAside:
-    """The follower's side: out of the lane, and then still."""
-
-    def __init__(self, body: RobotSection, gains: GainsSection, steering: Steering) -> None:
-        self._body = body
-        self._gains = gains
-        self._steering = steering
-
-    def step(self, pose: Pose, scan: Ranges, lane: Sequence[Point]) -> Twist:
-        """Twist for this tick. lane: its two ends, map frame [m]."""
-        x, y = _nearest(lane, (pose.x, pose.y))
-        distance = math.dist((x, y), (pose.x, pose.y))
-        if distance >= HALF_WIDTH:
-            return STANDSTILL
-        if distance < 1e-3:
-            away = elementary.atan2(lane[1][1] - lane[0][1], lane[1][0] - lane[0][0]) + 0.5 * math.pi
-        else:
-            away = elementary.atan2(pose.y - y, pose.x - x)
-        bearing = wrap_angle(away - pose.heading)
-        if abs(bearing) > FACING:
-            return turn_towards(bearing, self._gains, self._body)
-        self._steering.look(scan)
-        choice = self._steering.choose(bearing, LOOKAHEAD / 3.0, 0)
-        if choice is None:
-            return turn_towards(math.copysign(0.4, bearing), self._gains, self._body)
-        direction, free = choice
-        ahead = max(0.0, elementary.cos(direction))
-        speed = min(HURRY, max(0.0, free) / REACTION) * (ahead * ahead)
-        return Twist(speed, turn_towards(direction, self._gains, self._body).w)
+def draw_aside(steering: Steering, pose: Pose, scan: Ranges, lane: Sequence[Point]) -> Twist:
+    """The follower's side: out of the lane, and then still. lane: its two ends, map frame [m]."""
+    x, y = _nearest(lane, (pose.x, pose.y))
+    distance = math.dist((x, y), (pose.x, pose.y))
+    if distance >= HALF_WIDTH:
+        return STANDSTILL
+    if distance < ON_LANE:
+        (ax, ay), (bx, by) = lane
+        away = elementary.atan2(by - ay, bx - ax) + 0.5 * math.pi
+    else:
+        away = elementary.atan2(pose.y - y, pose.x - x)
+    return steering.around(scan, wrap_angle(away - pose.heading), TOP_SPEED)
 
 
 def _piece(pose: Pose, waypoint: Point) -> tuple[Point, Point]:

@@ -1,15 +1,15 @@
-"""How a leader drives: it plans (planning/), watches for passages, and gets out of jams of its own team.
+"""How a leader drives: it plans (planning/), watches for passages, and gets past its own team.
 
 The leader never waits for its followers (thesis 3.8.2), unless the scenario says that it slows down for
 stragglers.
 
-Differs: a planner knows no team mates, they are left out of what it sees (mates.py); where they stand in
-its way nevertheless, the leader steers around them like a follower until it moves again.
+Differs: a planner knows no followers, they are removed from what it sees (follower_detector.py); where
+they stand in its way nevertheless, the leader asks them for a lane (lane.py), and steers around them
+like a follower until it moves again (jam.py).
 """
 
 import math
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -20,191 +20,161 @@ from onehop.contracts.briefings import Briefing
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_map, wrap_angle
 from onehop.contracts.messages import Note
 from onehop.contracts.sections import GainsSection
-from onehop.contracts.team import Mode
-from onehop.contracts.units import NANOSECONDS
-from robot_agent.core.motion.follower_detector import FollowerDetector, painted
+from onehop.contracts.values import Value
+from robot_agent.core.motion.column import SMALLEST_SHAPE, ColumnWatch
+from robot_agent.core.motion.follower_detector import (
+    BeamNumbers,
+    FollowerDetector,
+    without_followers,
+)
+from robot_agent.core.motion.jam import LeaderJam
 from robot_agent.core.motion.lane import LaneRequest
-from robot_agent.core.motion.steering import LOOKAHEAD, Steering
-from robot_agent.core.motion.tracking import turn_towards
-from robot_agent.core.motion.trail import Trail
-from robot_agent.core.planning import Guidance, Pathfinder, PlannerStatus
-from robot_agent.core.team.formation import formation, width
-from robot_agent.core.team.part import Leading
-from robot_agent.core.team.state import TeamState
+from robot_agent.core.motion.occupied_goal import OccupiedGoal
+from robot_agent.core.motion.steering import Steering
+from robot_agent.core.motion.trail import Point, Trail
+from robot_agent.core.planning import Pathfinder, PlannerStatus
+from robot_agent.core.team.formation import formation
 
 PathfinderMaker = Callable[[Briefing, Pose, np.random.Generator], Pathfinder]
 
 ALIGNED = 0.05
 """The leader faces the goal within this angle before it gathers the team [rad] (thesis 3.4.1)."""
 
-MATE_TOLERANCE = 1.0
+REPORT_TOLERANCE = 1.0
 """A round thing this near to where a follower can be by its last report is that follower [m]."""
 
-WIDEST_PASSAGE = 9.0
-"""Passages wider than this never make a column, whatever the shape [m]: almost the laser's range."""
 
-NARROW_AFTER = 0.5
-"""A passage is narrow once it was for this long [s]; one look past a corner is not enough."""
+class TeamView(Value, frozen=True):
+    """What a leader knows of its team at a tick. Map frame, SI units.
 
-JAMMED_AFTER, UNJAM_FOR = 1.5, 1.5
-"""Time without getting anywhere after which the leader steers around its mates, and for how long [s]."""
+    gathering: its followers still form up around it. members: all, itself included. column: they drive
+    in column. reports: where each follower said that it was; reports_age: since they were asked [s].
+    announced: the pose that followers were last told to form up on. may_ask_for_room: see lane.py.
+    """
 
-JAM_RADIUS = 0.15
-"""Moving less than this is getting nowhere [m]."""
+    gathering: bool
+    members: tuple[int, ...]
+    column: bool
+    reports: Mapping[int, Point]
+    reports_age: float
+    announced: Pose
+    may_ask_for_room: bool
 
-MATES_NEAR = 1.0
-"""Something this near is needed for a jam [m]."""
 
+class LeaderDecision(Value, frozen=True):
+    """What a leader is up to at a tick, and what it wants of its team.
 
-class LeaderDecision(NamedTuple):
-    """What a leader does at a tick, and what it wants of its team."""
+    planned: the twist that way-finding gave. remaining: way still to drive [m]. waypoint: where it is
+    driving to; None while it gathers the team, and at the end. column: the team shall drive in column.
+    passage: the width [m] for which; None where the team is too small for any other shape. lane: to be
+    kept clear; lane_is_news: to be told at once. notes: of its way-finding, for people.
+    """
 
-    twist: Twist
-    narrow: bool
-    passage: float = math.inf
-    lane: tuple[tuple[float, float], ...] = ()
+    planned: Twist
+    status: PlannerStatus
+    remaining: float
+    waypoint: Point | None
+    column: bool
+    passage: float | None = None
+    lane: tuple[Point, ...] = ()
     lane_is_news: bool = False
-    status: PlannerStatus = PlannerStatus.DRIVING
     notes: tuple[Note, ...] = ()
 
 
-class Leader:
-    """Drives one robot while it leads. `begin` at each election."""
+class LeaderMotion:
+    """Drives one robot while it leads. `begin` with each leadership term."""
 
     def __init__(
         self,
         briefing: Briefing,
         gains: GainsSection,
-        fan: Beams,
+        beams: Beams,
         make_pathfinder: PathfinderMaker,
         rng: np.random.Generator,
     ) -> None:
+        period = briefing.period_ns / 1e9
         self._briefing = briefing
-        self._gains = gains
         self._make_pathfinder = make_pathfinder
         self._rng = rng
-        self._lookout = FollowerDetector(briefing.body, fan)
-        self._steering = Steering(briefing.body, fan)
-        self._request = LaneRequest(fan, briefing.period_ns / NANOSECONDS)
-        self._period = briefing.period_ns / NANOSECONDS
+        self._steering = Steering(briefing.body, gains, beams)
+        self._detector = FollowerDetector(briefing.body, beams)
+        self._columns = ColumnWatch(briefing.body, briefing.team, period)
+        self.lane = LaneRequest(beams, period)
+        self.jam = LeaderJam(briefing.body, self._steering, period)
+        self._occupied_goal = OccupiedGoal(briefing, beams)
         self._pathfinder: Pathfinder | None = None
+        self._status = PlannerStatus.DRIVING
+        self._remaining = 0.0
         self.trail = Trail()
-        self.remaining = 0.0
-        self._narrow_for = 0.0
-        self._wide_for = 0.0
-        self._still_at = (0.0, 0.0)
-        self._still_for = 0.0
-        self._unjam = 0.0
 
     def begin(self) -> None:
-        """A leadership begins: with a new pathfinder and a new trail."""
-        self._pathfinder = None
+        """A leadership term starts with a new pathfinder and a new trail."""
+        self._pathfinder, self._status = None, PlannerStatus.DRIVING
         self.trail = Trail()
-        self._request.begin()
-        self._still_for = self._unjam = self._narrow_for = 0.0
+        self.lane.begin()
+        self.jam.begin()
+        self._columns.begin()
 
-    def step(
-        self, state: TeamState, part: Leading, now_ns: int, pose: Pose, scan: Ranges, nearest: float,
-        makes_room: bool,
-    ) -> LeaderDecision:  # fmt: skip
-        """What to do at this tick."""
-        goal, body = self._briefing.goal, self._briefing.body
+    def decide(self, pose: Pose, scan: Ranges, team: TeamView) -> LeaderDecision:
+        """What way-finding wants at this tick, and what of the team; robot_motion.py drives by it."""
         self.trail.mark(pose)
-        if state.mode is Mode.SETUP:
-            bearing = wrap_angle(elementary.atan2(goal.y - pose.y, goal.x - pose.x) - pose.heading)
-            turn = turn_towards(bearing, self._gains, body) if abs(bearing) >= ALIGNED else STANDSTILL
-            return LeaderDecision(turn, state.narrow)
-        if state.mode is Mode.STOPPED:
-            return LeaderDecision(STANDSTILL, state.narrow)
+        if team.gathering:
+            return self._face_goal(pose, team)
+        if self._status is PlannerStatus.DRIVING and self._occupied_goal.reached(pose, scan):
+            self._status = PlannerStatus.ARRIVED
+        if self._status is not PlannerStatus.DRIVING:
+            return self._stop(team, ())
         if self._pathfinder is None:
             self._pathfinder = self._make_pathfinder(self._briefing, pose, self._rng)
-        mates = self._mates(part, now_ns, pose, scan)
-        guidance = self._pathfinder.step(pose, painted(scan, mates))
-        self.remaining = guidance.remaining
-        if guidance.progress is not PlannerStatus.DRIVING:
-            return LeaderDecision(
-                STANDSTILL, state.narrow, status=guidance.progress, notes=guidance.notes
-            )
-        narrow = self._watch_passage(state, guidance.passage)
-        decision = LeaderDecision(guidance.twist, narrow, guidance.passage, notes=guidance.notes)
-        if makes_room:
-            say = self._request.watch(pose, scan, mates, guidance.waypoint)
-            decision = decision._replace(lane=self._request.lane, lane_is_news=say)
-            if self._request.wait:
-                return decision._replace(twist=Twist(0.0, guidance.twist.w))
-        if self._jammed(pose, nearest):
-            return decision._replace(twist=self._around(pose, scan, guidance))
-        return decision._replace(twist=self._waiting(state, part, guidance.twist))
+        followers = self._followers(pose, scan, team)
+        guidance = self._pathfinder.step(pose, without_followers(scan, followers))
+        self._status = guidance.progress
+        self._remaining = guidance.remaining
+        if self._status is not PlannerStatus.DRIVING:
+            return self._stop(team, guidance.notes)
+        column = self._columns.step(guidance.passage, team.members, team.column)
+        lane_is_news = team.may_ask_for_room and self.lane.watch(
+            pose, scan, followers, guidance.waypoint
+        )
+        return LeaderDecision(
+            planned=guidance.twist,
+            status=self._status,
+            remaining=self._remaining,
+            waypoint=guidance.waypoint,
+            column=column,
+            passage=guidance.passage if len(team.members) >= SMALLEST_SHAPE else None,
+            lane=self.lane.lane,
+            lane_is_news=lane_is_news,
+            notes=guidance.notes,
+        )
 
-    def _mates(self, part: Leading, now_ns: int, pose: Pose, scan: Ranges) -> frozenset[int]:
-        """Beams that hit followers, as far as their reports say where they may be by now."""
-        reports = part.ledger.reports
-        if not reports:
-            return frozenset()
-        age = (now_ns - part.schedule.commanded_ns) / NANOSECONDS
-        reach = self._briefing.body.max_speed * age + MATE_TOLERANCE
-        places = [(report.pose.x, report.pose.y) for report in reports.values()]
-        return self._lookout.beams(pose, scan, places, reach)
-
-    def _watch_passage(self, state: TeamState, passage: float) -> bool:
-        """Narrow and back: column while the passage is too tight for the shape (thesis 3.3.1)."""
-        team, body, members = self._briefing.team, self._briefing.body, state.roster.members
-        if len(members) < 3:
-            return False
-        if 2.0 * body.radius < passage < WIDEST_PASSAGE and passage < self._needed(members):
-            self._wide_for = 0.0
-            self._narrow_for += self._period
-            return state.narrow or self._narrow_for >= NARROW_AFTER
-        self._narrow_for = 0.0
-        self._wide_for += self._period
-        column = team.narrow_spacing * len(members)
-        return state.narrow and self._wide_for * body.leader_speed <= column
-
-    def _needed(self, members: tuple[int, ...]) -> float:
-        """Free width that the shape of the team needs [m]."""
-        shape = formation(members, False, self._briefing.team.spacing)
-        return width(shape) + 4.0 * self._briefing.body.radius
-
-    def _jammed(self, pose: Pose, nearest: float) -> bool:
-        """Whether the leader stands among its mates for too long, or is still on its way out."""
-        if self._unjam > 0.0:
-            self._unjam -= self._period
-            return True
-        if math.dist(self._still_at, (pose.x, pose.y)) > JAM_RADIUS or nearest > MATES_NEAR:
-            self._still_at, self._still_for = (pose.x, pose.y), 0.0
-            return False
-        self._still_for += self._period
-        if self._still_for < JAMMED_AFTER:
-            return False
-        self._still_for, self._unjam = 0.0, UNJAM_FOR
-        return True
-
-    def _around(self, pose: Pose, scan: Ranges, guidance: Guidance) -> Twist:
-        """Towards the virtual goal through whatever gap there is."""
-        body = self._briefing.body
-        x, y = guidance.waypoint
-        bearing = wrap_angle(elementary.atan2(y - pose.y, x - pose.x) - pose.heading)
-        if abs(bearing) > 1.2:
-            return turn_towards(bearing, self._gains, body)
-        self._steering.look(scan)
-        choice = self._steering.choose(bearing, LOOKAHEAD / 3.0, 0)
-        if choice is None:
-            return turn_towards(math.copysign(0.4, bearing), self._gains, body)
-        direction, free = choice
-        facing = max(0.0, elementary.cos(direction))
-        speed = min(body.leader_speed, max(0.0, free))
-        return Twist(speed * facing * facing, turn_towards(direction, self._gains, body).w)
-
-    def _waiting(self, state: TeamState, part: Leading, twist: Twist) -> Twist:
-        """The same arc, slower while somebody straggles, if the scenario says so."""
-        share = self._briefing.team.straggler_speed
+    def slowed_for_stragglers(self, twist: Twist, team: TeamView, column: bool) -> Twist | None:
+        """The same arc, slower, while somebody straggles and the scenario says so; else None."""
+        section = self._briefing.team
+        share, announced = section.straggler_speed, team.announced
         if share >= 1.0:
-            return twist
-        spacing = self._briefing.team.spacing
-        for slot in formation(state.roster.members, state.narrow, spacing).slots:
-            report = part.ledger.reports.get(slot.robot)
-            if report is not None:
-                x, y = to_map(part.told, slot.x, slot.y)
-                if math.hypot(report.pose.x - x, report.pose.y - y) > spacing:
+            return None
+        spacing = section.narrow_spacing if column else section.spacing
+        for slot in formation(team.members, column, spacing).slots:
+            place = team.reports.get(slot.robot)
+            if place is not None:
+                x, y = to_map(announced, slot.x, slot.y)
+                if math.hypot(place[0] - x, place[1] - y) > section.spacing:
                     return Twist(share * twist.v, share * twist.w)
-        return twist
+        return None
+
+    def _face_goal(self, pose: Pose, team: TeamView) -> LeaderDecision:
+        """Turn to the goal, then wait until the team has formed up (thesis 3.4.1)."""
+        dx, dy = self._briefing.goal.x - pose.x, self._briefing.goal.y - pose.y
+        bearing = wrap_angle(elementary.atan2(dy, dx) - pose.heading)
+        twist = self._steering.turn(bearing) if abs(bearing) >= ALIGNED else STANDSTILL
+        return LeaderDecision(twist, self._status, math.hypot(dx, dy), None, team.column)
+
+    def _stop(self, team: TeamView, notes: tuple[Note, ...]) -> LeaderDecision:
+        """At the goal, or where all ways end."""
+        return LeaderDecision(STANDSTILL, self._status, self._remaining, None, team.column, notes=notes)
+
+    def _followers(self, pose: Pose, scan: Ranges, team: TeamView) -> BeamNumbers:
+        """The beams that hit followers, as far as their reports say where they may be by now."""
+        reach = self._briefing.body.max_speed * team.reports_age + REPORT_TOLERANCE
+        return self._detector.beams(pose, scan, tuple(team.reports.values()), reach)

@@ -27,11 +27,11 @@ MARGIN = 0.05
 class SafetyFilter:
     """Shortens the commanded arc of one tick where the scan demands it."""
 
-    def __init__(self, body: RobotSection, fan: Beams, period: float) -> None:
+    def __init__(self, body: RobotSection, beams: Beams, period: float) -> None:
         """period: length of a tick [s]."""
         self._radius = body.radius
         self._period = period
-        self._directions = fan.directions
+        self._directions = beams.directions
         top = max(body.max_speed, body.leader_speed)
         self.reach = body.radius + MARGIN + 2.0 * top * period
         """Nothing farther away than this can limit a tick [m]."""
@@ -56,7 +56,7 @@ class SafetyFilter:
         reached = (ahead > 0.0) & (beside_squared < keep * keep)
         if not reached.any():
             return twist
-        keep = keep[reached]
-        free = ahead[reached] - np.sqrt(keep * keep - beside_squared[reached])
+        keep, beside_squared = keep[reached], beside_squared[reached]
+        free = ahead[reached] - np.sqrt(keep * keep - beside_squared)
         v = min(twist.v, max(0.0, float(free.min())) / self._period)
         return Twist(v, twist.w)

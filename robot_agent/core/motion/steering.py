@@ -1,142 +1,70 @@
-"""Where a follower may drive: free directions in its scan, and the border of what is in its way.
+"""From a bearing to a twist: turn to it, drive in it, and drive around what is in the way of it.
 
-Steering is the Vector Field Histogram in the masked form of VFH+ (Ulrich and Borenstein 1998) without
-its grid: a candidate direction is free when a disc of the robot's size and a clearance can be pushed
-along it for far enough, and the free one nearest to the wanted bearing is taken, with a preference for
-the one taken before. Border following is that of DistBug (Kamon and Rivlin 1997): turn to one side, keep
-the obstacle on the other, and leave it when the way to the target is free.
-
-Other robots are obstacles like any other (thesis 3.1). Only the current scan is used.
+Everything that moves a robot but for its two controllers, the leader's path tracking and the thesis's
+polar law, asks here.
 """
 
 import math
 
-import numpy as np
-import numpy.typing as npt
-
 from onehop.contracts import elementary
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.beams import Beams
-from onehop.contracts.sections import RobotSection
+from onehop.contracts.geometry import STANDSTILL, Twist
+from onehop.contracts.sections import GainsSection, RobotSection
+from robot_agent.core.motion.free_directions import LOOKAHEAD, FreeDirections
 
-LOOKAHEAD = 2.5
-"""Obstacles farther away than this do not steer [m]."""
+TURN_IN_PLACE = 1.2
+"""A bearing greater than this is turned to on the spot [rad]: driving would gain an eighth at most."""
 
-CLEARANCES = (0.25, 0.08)
-"""Wanted distance between hull and obstacle, and the least that is accepted in a tight place [m]."""
+LOOK_ROUND = 0.4
+"""Where no direction is free, the robot turns as to a bearing of this size [rad]: with the thesis's
+k_alpha as fast as its body can."""
 
-STEP = math.radians(6.0)
-"""Spacing of the candidate directions [rad]."""
+REACTION = 0.4
+"""A robot drives at most as fast as lets it stop within this time before what it sees [s]."""
 
-NEEDED = 1.2
-"""A direction is free when it is for this far [m], or up to the target if that is nearer."""
-
-TURN_AWAY = math.radians(12.0)
-"""What is nearer than the accepted clearance blocks a right angle and this much more to both sides
-[rad]: the robot then draws away from it. Driving straight along it would leave it as near as it is."""
-
-INERTIA = 0.25
-"""Cost of leaving the direction taken before, relative to that of leaving the bearing."""
-
-SIGHT_TOLERANCE = 0.3
-"""A hit this little before a point does not hide it [m]: the bundle's beams are not all on it."""
-
-BUNDLE = 3
-"""Neighbouring beams taken as one."""
-
-TOO_NEAR = 2.0
-"""Stands for R / r >= 1: greater than any sine."""
-
-FloatArray = npt.NDArray[np.float64]
+GAP = LOOKAHEAD / 3.0
+"""Free distance that is enough to drive around something close [m]: two robots and a hand's breadth."""
 
 
 class Steering:
-    """Free directions of one scan. `look` first, then ask.
+    """Steers one robot; holds the free directions of its last look."""
 
-    An obstacle at range r keeps a disc of radius R from every direction nearer to it than asin(R / r),
-    and stops it there after r - R. That is exact in the middle and cautious at the edges. Beams are
-    taken three at a time, the nearest of them, because this runs at every tick. Sines are compared
-    instead of angles: an arcsine has another last place on another processor.
-    """
+    def __init__(self, body: RobotSection, gains: GainsSection, beams: Beams) -> None:
+        self.free = FreeDirections(body, beams)
+        self._k_alpha = gains.k_alpha
+        self._max_rate = body.max_turn_rate
 
-    def __init__(self, body: RobotSection, fan: Beams) -> None:
-        self._radii = tuple(body.radius + clearance for clearance in CLEARANCES)
-        bundles = max(1, len(fan.angles) // BUNDLE)
-        self._beams = bundles * BUNDLE
-        self._angles: FloatArray = fan.angles[: self._beams].reshape(bundles, BUNDLE).mean(axis=1)
-        half = math.radians(min(body.laser_fov_deg, 180.0)) / 2.0
-        self.candidates: FloatArray = np.arange(-half, half + 1e-9, STEP)
-        apart: FloatArray = np.abs(self._angles[None, :] - self.candidates[:, None])
-        self._apart = _as_sines(apart, elementary.sines(apart.ravel()).reshape(apart.shape))
-        self._cosines, self._sines = elementary.cosines(self._angles), elementary.sines(self._angles)
-        self._ranges: FloatArray = np.full(bundles, LOOKAHEAD)
-        self._near: Ranges = np.full(bundles, np.inf, np.float32)
-        self._spacing = float(self._angles[1] - self._angles[0]) if bundles > 1 else math.pi
-        self._shadows: list[tuple[FloatArray, FloatArray] | None] = [None, None]
-        self._chosen = 0.0
+    def turn(self, bearing: float) -> Twist:
+        """Turn on the spot towards a bearing [rad]."""
+        return Twist(0.0, self._rate(bearing)) if bearing else STANDSTILL
 
-    def look(self, scan: Ranges) -> None:
-        """Take the scan of this tick."""
-        near = np.minimum(scan[0 : self._beams : BUNDLE], scan[1 : self._beams : BUNDLE])
-        near = np.minimum(near, scan[2 : self._beams : BUNDLE])
-        self._near = near
-        self._ranges = np.minimum(near, 2.0 * LOOKAHEAD, dtype=np.float64)
-        self._shadows = [None, None]
+    def drive(self, direction: float, speed: float) -> Twist:
+        """Drive in a direction [rad], slower while it is still turned to, and not at all abeam.
 
-    def _shadow(self, tight: bool) -> tuple[FloatArray, FloatArray]:
-        """For each bundle of beams the sine of half of what it blocks, and after how far [m]."""
-        shadow = self._shadows[tight]
-        if shadow is None:
-            radius = self._radii[tight]
-            ratio = radius / self._ranges
-            ratio[ratio >= 1.0] = TOO_NEAR
-            shadow = self._shadows[tight] = ratio, self._ranges - radius
-        return shadow
-
-    def free_distance(self, bearing: float, tight: bool = False) -> float:
-        """How far the robot could drive along a bearing [m], at most LOOKAHEAD."""
-        ratios, depths = self._shadow(tight)
-        c, s = elementary.cos(bearing), elementary.sin(bearing)
-        sines = np.abs(self._sines * c - self._cosines * s)
-        in_way = _as_sines(np.abs(self._angles - bearing), sines) < ratios
-        return float(depths.min(where=in_way, initial=LOOKAHEAD))
-
-    def sees(self, bearing: float, distance: float) -> bool:
-        """Whether the laser looks past a point at this bearing and distance [rad, m]."""
-        place = (bearing - float(self._angles[0])) / self._spacing
-        low = max(0, math.floor(place))
-        beams = self._near[low : low + 2]
-        return bool(beams.size) and float(beams.min()) > distance - SIGHT_TOLERANCE
-
-    def choose(self, bearing: float, distance: float, side: int) -> tuple[float, float] | None:
-        """Direction to drive in and how far it is free [rad, m]; None when every direction is blocked.
-
-        bearing, distance: of the target. side: 0 to take the free direction nearest to the bearing; +1
-        to keep an obstacle on the right and pass it on the left, -1 the other way round.
+        The speed [m/s] falls with the square of the cosine: once for the part of it that points there,
+        and once more so that the robot turns before it drives.
         """
-        need = min(NEEDED, distance)
-        for tight in (False, True):
-            ratios, depths = self._shadow(tight)
-            free = np.where(self._apart < ratios, depths, LOOKAHEAD).min(axis=1)
-            ok = free >= need
-            if not ok.any():
-                continue
-            if side == 0:
-                change = np.abs(self.candidates - self._chosen)
-                cost = np.abs(self.candidates - bearing) + INERTIA * change
-                best = int(np.where(ok, cost, np.inf).argmin())
-            else:
-                order = np.flatnonzero(ok)
-                best = int(order[0] if side > 0 else order[-1])
-            self._chosen = float(self.candidates[best])
-            return self._chosen, float(free[best])
-        return None
+        facing = max(0.0, elementary.cos(direction))
+        return Twist(speed * facing * facing, self._rate(direction))
+
+    def around(self, scan: Ranges, bearing: float, speed: float, reaction: float = REACTION) -> Twist:
+        """Towards a bearing [rad] through whatever gap there is, at `speed` [m/s] at most."""
+        if abs(bearing) > TURN_IN_PLACE:
+            return self.turn(bearing)
+        self.free.look(scan)
+        choice = self.free.choose(bearing, GAP)
+        if choice is None:
+            return self.turn(math.copysign(LOOK_ROUND, bearing))
+        direction, free = choice
+        return self.drive(direction, stoppable(speed, free, reaction))
+
+    def _rate(self, bearing: float) -> float:
+        """Turn rate towards a bearing [rad/s], within what the body can."""
+        wanted = self._k_alpha * bearing
+        return max(-self._max_rate, min(self._max_rate, wanted)) if bearing else 0.0
 
 
-def _as_sines(apart: FloatArray, sines: FloatArray) -> FloatArray:
-    """Angles between directions and beams [rad] in an order that compares with R / r.
-
-    sines: theirs. Beyond a right angle only what is too near blocks, and beyond TURN_AWAY nothing does.
-    """
-    beyond = np.where(apart < 0.5 * math.pi + TURN_AWAY, 1.0, np.inf)
-    return np.where(apart < 0.5 * math.pi, sines, beyond)
+def stoppable(speed: float, free: float, reaction: float = REACTION) -> float:
+    """The speed [m/s], or what lets a robot stop after `free` metres within its reaction time [s]."""
+    return min(speed, max(0.0, free) / reaction)

@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from onehop.contracts import elementary
-from onehop.contracts.geometry import STANDSTILL, Pose, Twist, wrap_angle
+from onehop.contracts.geometry import Pose, Twist, wrap_angle
 from onehop.contracts.sections import GainsSection, RobotSection
 
 HALF_TURN = math.pi / 2.0
@@ -67,9 +67,3 @@ def within_limits(twist: Twist, body: RobotSection) -> Twist:
         return twist
     share = body.max_turn_rate / abs(twist.w)
     return Twist(twist.v * share, math.copysign(body.max_turn_rate, twist.w))
-
-
-def turn_towards(bearing: float, gains: GainsSection, body: RobotSection) -> Twist:
-    """Turn on the spot towards a bearing [rad]."""
-    w = gains.k_alpha * bearing
-    return Twist(0.0, max(-body.max_turn_rate, min(body.max_turn_rate, w))) if bearing else STANDSTILL

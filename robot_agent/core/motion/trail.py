@@ -14,27 +14,32 @@ from collections.abc import Sequence
 from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, to_map
 
-STEP, POINTS = 1.0, 24
-"""Spacing [m] and number of the points that a leader remembers and tells."""
+Point = tuple[float, float]
+"""A place in the map frame [m]."""
 
-BACK = 1.2
-"""A leader this near to an earlier point of its trail has come back to it [m]."""
+STEP, POINTS = 1.0, 24
+"""Spacing [m] and number of the points that a leader remembers and tells: a column of sixteen, and less
+than 500 bytes of the command."""
+
+CAME_BACK = 1.2
+"""A leader this near to an earlier point of its trail has come back to it [m]: a little over a step."""
 
 BASE = 3.0
-"""The course is the direction from the point of the trail that is this far behind [m]."""
+"""The course is the direction from the point of the trail that is this far behind [m]: long enough not
+to swing with every step aside, short enough to be through a bend soon after the leader."""
 
 
 class Trail:
     """The points of a leader's way, without its loops."""
 
     def __init__(self) -> None:
-        self.points: list[tuple[float, float]] = []
+        self.points: list[Point] = []
 
     def mark(self, pose: Pose) -> None:
         """Take where the leader is now."""
         points, here = self.points, (pose.x, pose.y)
         for place in range(len(points) - 2):
-            if math.dist(points[place], here) < BACK:
+            if math.dist(points[place], here) < CAME_BACK:
                 del points[place + 1 :]
                 break
         if not points or math.dist(points[-1], here) >= STEP:
@@ -49,7 +54,7 @@ class Trail:
         return pose.heading
 
 
-def behind(leader: Pose, trail: Sequence[tuple[float, float]], distance: float) -> Pose:
+def behind(leader: Pose, trail: Sequence[Point], distance: float) -> Pose:
     """The pose `distance` [m] behind the leader along its way, heading along it.
 
     trail: points of the way, oldest first, map frame. Where the trail ends the way goes on straight.

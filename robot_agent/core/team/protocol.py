@@ -81,10 +81,15 @@ class TeamProtocol:
 
     # what the rest of the robot tells it
 
-    def order_column(self, narrow: bool, passage: float) -> None:
-        """A leader wants a column, or the shape again. passage: free width that made it so [m]."""
-        if narrow is not self.state.narrow:
-            self.state.narrow = narrow
+    def order_column(self, narrow: bool, passage: float | None) -> None:
+        """A leader wants a column, or the shape again.
+
+        passage: free width that made it so [m]; None where the team has no other shape.
+        """
+        if narrow is self.state.narrow:
+            return
+        self.state.narrow = narrow
+        if passage is not None:
             self._outbox.note("narrow" if narrow else "wide", passage=passage)
 
     def keep_clear(self, lane: Points, now: bool) -> None:

@@ -5,44 +5,46 @@ import math
 import numpy as np
 import pytest
 
-from onehop.contracts.beams import Beams
-from onehop.contracts.geometry import Pose, Twist, wrap_angle
-from onehop.contracts.sections import GainsSection, RobotSection, TeamSection
+from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.sections import TeamSection
 from onehop.contracts.team import Mode
-from robot_agent.core.motion.lane import HALF_WIDTH, LONGEST, LONGEST_WAIT, PAUSE, DrawAside, LaneRequest
+from robot_agent.core.motion.lane import (
+    HALF_WIDTH,
+    LONGEST,
+    LONGEST_WAIT,
+    PAUSE,
+    LaneRequest,
+    draw_aside,
+)
 from robot_agent.core.motion.steering import Steering
 from robot_agent.core.team.roster import Roster
 from robot_agent.core.team.team_messages import Command, CommandKind, MissionPhase, encode
+from tests.agent.motion.scans import BEAMS, BODY, GAINS, HERE, OPEN, PERIOD, block, moved
 from tests.agent.team.team_net import TeamNet
 
-BODY = RobotSection()
-FAN = Beams(BODY)
-OPEN = np.full(181, np.inf, np.float32)
-PERIOD = 0.05
-HERE = Pose(0.0, 0.0, 0.0)
 AHEAD, BESIDE = (6.0, 0.0), (0.0, 6.0)
+NOBODY = np.empty(0, dtype=np.intp)
 
 
-def mate(bearing, distance):
-    """A scan with one mate in it, and its beams."""
-    scan = OPEN.copy()
-    beams = range(90 + bearing - 3, 90 + bearing + 4)
-    scan[beams.start : beams.stop] = distance
-    return scan, frozenset(beams)
+def one(bearing, distance):
+    """A scan with one follower in it [deg, m], and the beams that hit it."""
+    scan = block(bearing - 3, bearing + 3, distance)
+    return scan, np.flatnonzero(np.isfinite(scan))
 
 
-def watch(request, seconds, scan, mates, waypoint=AHEAD):
+def watch(request, seconds, scan, followers, waypoint=AHEAD):
     """Let time pass; how often there was something to say."""
-    return sum(request.watch(HERE, scan, mates, waypoint) for _ in range(round(seconds / PERIOD)))
+    ticks = range(round(seconds / PERIOD))
+    return sum(request.watch(HERE, scan, followers, waypoint) for _ in ticks)
 
 
-def test_a_mate_in_the_way_makes_the_leader_ask_for_a_lane_and_say_so_once_a_second():
-    request = LaneRequest(FAN, PERIOD)
-    assert watch(request, 0.3, *mate(0, 1.5)) == 0
+def test_a_follower_in_the_way_makes_the_leader_ask_for_a_lane_and_say_so_once_a_second():
+    request = LaneRequest(BEAMS, PERIOD)
+    assert watch(request, 0.3, *one(0, 1.5)) == 0
     assert request.lane == ()
-    assert watch(request, 0.2, *mate(0, 1.5)) == 1
+    assert watch(request, 0.2, *one(0, 1.5)) == 1
     assert request.lane == ((0.0, 0.0), (4.0, 0.0))
-    assert watch(request, 2.0, *mate(0, 1.5)) == 2
+    assert watch(request, 2.0, *one(0, 1.5)) == 2
 
 
 @pytest.mark.parametrize(
@@ -50,29 +52,29 @@ def test_a_mate_in_the_way_makes_the_leader_ask_for_a_lane_and_say_so_once_a_sec
     [(0, 2.5, AHEAD), (60, 1.5, AHEAD), (0, 1.5, BESIDE)],
     ids=["far ahead", "beside the way", "not where the leader is going"],
 )
-def test_a_mate_that_is_not_in_the_way_is_left_alone(bearing, distance, waypoint):
-    request = LaneRequest(FAN, PERIOD)
-    assert watch(request, 3.0, *mate(bearing, distance), waypoint) == 0
+def test_a_follower_that_is_not_in_the_way_is_left_alone(bearing, distance, waypoint):
+    request = LaneRequest(BEAMS, PERIOD)
+    assert watch(request, 3.0, *one(bearing, distance), waypoint) == 0
     assert request.lane == ()
 
 
-def test_an_obstacle_that_is_no_mate_asks_nobody_for_room():
-    request = LaneRequest(FAN, PERIOD)
-    assert watch(request, 3.0, mate(0, 1.0)[0], frozenset()) == 0
+def test_an_obstacle_that_is_no_follower_asks_nobody_for_room():
+    request = LaneRequest(BEAMS, PERIOD)
+    assert watch(request, 3.0, one(0, 1.0)[0], NOBODY) == 0
 
 
 def test_the_lane_is_given_back_when_nobody_is_in_the_way_any_more():
-    request = LaneRequest(FAN, PERIOD)
-    watch(request, 0.5, *mate(0, 1.5))
-    watch(request, 0.9, OPEN, frozenset())
+    request = LaneRequest(BEAMS, PERIOD)
+    watch(request, 0.5, *one(0, 1.5))
+    watch(request, 0.9, OPEN, NOBODY)
     assert request.lane
-    assert watch(request, 0.2, OPEN, frozenset()) >= 1
+    assert watch(request, 0.2, OPEN, NOBODY) >= 1
     assert request.lane == ()
 
 
 def test_a_lane_that_does_not_help_is_given_up_for_a_while():
-    request = LaneRequest(FAN, PERIOD)
-    blocked = mate(0, 1.0)
+    request = LaneRequest(BEAMS, PERIOD)
+    blocked = one(0, 1.0)
     watch(request, LONGEST + 0.6, *blocked)
     assert request.lane == ()
     watch(request, PAUSE - 0.5, *blocked)
@@ -81,42 +83,36 @@ def test_a_lane_that_does_not_help_is_given_up_for_a_while():
     assert request.lane
 
 
-def test_the_leader_waits_for_a_mate_right_before_it_but_not_for_ever():
-    request = LaneRequest(FAN, PERIOD)
-    watch(request, 0.5, *mate(0, 1.5))
+def test_the_leader_waits_for_a_follower_right_before_it_but_not_for_ever():
+    request = LaneRequest(BEAMS, PERIOD)
+    watch(request, 0.5, *one(0, 1.5))
     assert not request.wait
-    watch(request, 0.1, *mate(0, 1.0))
+    watch(request, 0.1, *one(0, 1.0))
     assert request.wait
-    watch(request, LONGEST_WAIT, *mate(0, 1.0))
+    watch(request, LONGEST_WAIT, *one(0, 1.0))
     assert not request.wait
-
-
-def moved(pose, twist):
-    heading = pose.heading + 0.5 * twist.w * PERIOD
-    return Pose(
-        pose.x + twist.v * PERIOD * math.cos(heading),
-        pose.y + twist.v * PERIOD * math.sin(heading),
-        wrap_angle(pose.heading + twist.w * PERIOD),
-    )
 
 
 @pytest.mark.parametrize("y", [-0.7, 0.0, 0.4])
 def test_a_follower_in_the_lane_draws_aside_and_then_stands_still(y):
-    aside = DrawAside(BODY, GainsSection(), Steering(BODY, FAN))
+    steering = Steering(BODY, GAINS, BEAMS)
     lane = ((0.0, 0.0), (4.0, 0.0))
     pose = Pose(2.0, y, math.pi)
     for _ in range(100):
-        pose = moved(pose, aside.step(pose, OPEN, lane))
+        pose = moved(pose, draw_aside(steering, pose, OPEN, lane))
     assert HALF_WIDTH <= abs(pose.y) < HALF_WIDTH + 0.2
     assert pose.y * y >= 0.0, "to the side on which it was"
-    assert aside.step(pose, OPEN, lane) == Twist(0.0, 0.0)
+    assert draw_aside(steering, pose, OPEN, lane) == Twist(0.0, 0.0)
 
 
 def test_between_lane_and_wall_a_follower_goes_along_the_wall():
-    aside = DrawAside(BODY, GainsSection(), Steering(BODY, FAN))
+    steering = Steering(BODY, GAINS, BEAMS)
     wall = OPEN.copy()
     wall[45:136] = 0.5
-    twists = [aside.step(Pose(2.0, 0.5, math.pi / 2), wall, ((0.0, 0.0), (4.0, 0.0))) for _ in range(9)]
+    twists = [
+        draw_aside(steering, Pose(2.0, 0.5, math.pi / 2), wall, ((0.0, 0.0), (4.0, 0.0)))
+        for _ in range(9)
+    ]
     assert abs(twists[-1].w) > 1.0
 
 

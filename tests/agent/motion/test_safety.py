@@ -7,25 +7,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from onehop.contracts.beams import Beams
 from onehop.contracts.briefings import robot_briefing
-from onehop.contracts.geometry import Pose, Twist, wrap_angle
+from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Percept
 from onehop.contracts.scenario import Scenario
-from onehop.contracts.sections import GainsSection, GoalSection, MapSection, RobotSection, TeamSection
+from onehop.contracts.sections import GainsSection, GoalSection, MapSection, TeamSection
 from onehop.contracts.team import Mode
 from robot_agent.core.motion.safety import MARGIN, SafetyFilter
 from robot_agent.core.planning import Guidance, PlannerStatus
 from robot_agent.core.robot import Robot
-
-BODY = RobotSection()
-FAN = Beams(BODY)
-PERIOD = 0.05
+from tests.agent.motion.scans import BEAMS, BODY, PERIOD, moved
 
 
 def seen(pose, other):
     """Exact scan of one disc."""
-    bearing = FAN.angles + pose.heading
+    bearing = BEAMS.angles + pose.heading
     dx, dy = other.x - pose.x, other.y - pose.y
     along = dx * np.cos(bearing) + dy * np.sin(bearing)
     beside = dx * dx + dy * dy - along * along
@@ -34,22 +30,13 @@ def seen(pose, other):
     return np.where(hit, along - depth, np.inf).astype(np.float32)
 
 
-def moved(pose, twist):
-    middle = pose.heading + 0.5 * twist.w * PERIOD
-    return Pose(
-        pose.x + twist.v * PERIOD * math.cos(middle),
-        pose.y + twist.v * PERIOD * math.sin(middle),
-        wrap_angle(pose.heading + twist.w * PERIOD),
-    )
-
-
 twists = st.lists(st.tuples(st.floats(0.0, 3.0), st.floats(-3.0, 3.0)), min_size=1, max_size=6)
 
 
 @settings(deadline=None, max_examples=50)
 @given(st.floats(-3.1, 3.1), st.floats(-3.1, 3.1), st.floats(0.5, 1.5), twists, twists)
 def test_two_robots_that_drive_as_they_like_never_touch(heading_a, heading_b, apart, wants_a, wants_b):
-    guard = SafetyFilter(BODY, FAN, PERIOD)
+    guard = SafetyFilter(BODY, BEAMS, PERIOD)
     a, b = Pose(0.0, 0.0, heading_a), Pose(apart, 0.0, heading_b)
     for tick in range(60):
         twists_now = []
@@ -64,10 +51,10 @@ def test_two_robots_that_drive_as_they_like_never_touch(heading_a, heading_b, ap
 @settings(deadline=None, max_examples=50)
 @given(st.floats(0.3, 2.0), st.floats(-1.4, 1.4))
 def test_a_wall_is_approached_but_never_reached(distance, heading):
-    guard = SafetyFilter(BODY, FAN, PERIOD)
+    guard = SafetyFilter(BODY, BEAMS, PERIOD)
     pose = Pose(0.0, 0.0, heading)
     for _ in range(80):
-        across = np.cos(FAN.angles + pose.heading)
+        across = np.cos(BEAMS.angles + pose.heading)
         left = distance - pose.x
         scan = np.where(across > 1e-3, left / np.maximum(across, 1e-3), np.inf).astype(np.float32)
         pose = moved(pose, guard.filtered(Twist(3.0, 0.0), scan, float(scan.min())))
@@ -75,13 +62,13 @@ def test_a_wall_is_approached_but_never_reached(distance, heading):
 
 
 def test_nothing_near_changes_nothing():
-    guard = SafetyFilter(BODY, FAN, PERIOD)
+    guard = SafetyFilter(BODY, BEAMS, PERIOD)
     scan = np.full(181, 2.0, np.float32)
     assert guard.filtered(Twist(3.0, 1.0), scan, 2.0) == Twist(3.0, 1.0)
 
 
 def test_a_robot_at_the_margin_may_still_turn_and_drive_away():
-    guard = SafetyFilter(BODY, FAN, PERIOD)
+    guard = SafetyFilter(BODY, BEAMS, PERIOD)
     ahead = np.full(181, np.inf, np.float32)
     ahead[85:96] = BODY.radius + MARGIN
     stopped = guard.filtered(Twist(1.0, 2.0), ahead, float(ahead.min()))
@@ -93,7 +80,7 @@ def test_a_robot_at_the_margin_may_still_turn_and_drive_away():
 
 
 def test_a_robot_backs_up_only_where_it_may_do_so_blindly():
-    guard = SafetyFilter(BODY, FAN, PERIOD)
+    guard = SafetyFilter(BODY, BEAMS, PERIOD)
     nothing = np.full(181, np.inf, np.float32)
     assert guard.filtered(Twist(-1.0, 0.5), nothing, math.inf) == Twist(0.0, 0.5)
     assert guard.filtered(Twist(-1.0, 0.5), nothing, math.inf, blind=True) == Twist(-1.0, 0.5)

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.sections import GainsSection, RobotSection
-from robot_agent.core.motion.tracking import polar_error, polar_twist, turn_towards, within_limits
+from robot_agent.core.motion.tracking import polar_error, polar_twist, within_limits
 
 GAINS = GainsSection()
 TARGET = Pose(0.0, 0.0, 0.0)
@@ -75,9 +75,3 @@ def test_turn_limit_keeps_the_arc():
     limited = within_limits(Twist(2.0, -6.0), body)
     assert limited == Twist(1.0, -3.0)
     assert within_limits(Twist(2.0, 1.0), body) == Twist(2.0, 1.0)
-
-
-def test_turning_on_the_spot_never_moves():
-    body = RobotSection()
-    assert turn_towards(3.0, GAINS, body) == Twist(0.0, body.max_turn_rate)
-    assert turn_towards(-0.1, GAINS, body) == Twist(0.0, pytest.approx(-0.8))

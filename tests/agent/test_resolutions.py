@@ -1,0 +1,59 @@
+"""A team drives the same with any laser and any control period that a scenario may ask for."""
+
+from pathlib import Path
+
+import pytest
+
+from onehop.contracts.messages import Action
+from onehop.drivers import inline
+from onehop.scenario import scenario_file
+from world_server.core.world import World
+
+SCENE = """
+name = "a passage, and a block behind it"
+[map]
+width = 50
+height = 30
+obstacles = [
+    [[20, 0], [22, 0], [22, 13], [20, 13]],
+    [[20, 16.5], [22, 16.5], [22, 30], [20, 30]],
+    [[30, 10], [36, 10], [36, 20], [30, 20]],
+]
+[start]
+x = 8
+y = 8
+[goal]
+x = 44
+y = 15
+[team]
+size = 4
+[clock]
+limit_s = 200
+"""
+"""35 m to go: through 3.5 m between two walls, then around a block of 6 m by 10 m."""
+
+LONGEST_S = 70.0
+"""At 181 beams and 50 ms it takes 50 to 60 s, depending on the seed."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("period_ms", [20, 50, 100])
+@pytest.mark.parametrize("beams", [90, 181, 361, 721])
+@pytest.mark.parametrize("seed", [1, 5, 7])
+def test_a_team_passes_a_narrow_passage_and_a_block(tmp_path: Path, beams, period_ms, seed):
+    path = tmp_path / "scene.toml"
+    path.write_text(SCENE)
+    shapes = []
+
+    def watch(world: World, actions: dict[int, Action]) -> None:
+        del world
+        shapes.append(actions[2].status.shape.value)
+
+    settings = (f"robot.laser_beams={beams}", f"clock.period_ms={period_ms}", f"seed={seed}")
+    outcome = inline.run(scenario_file.load(path, settings), None, watch)
+    assert outcome.outcome == "arrived", outcome.reason
+    assert outcome.arrived == (1, 2, 3, 4)
+    assert outcome.collisions == 0
+    assert outcome.sim_s < LONGEST_S
+    assert "column" in shapes, "the passage was seen"
+    assert shapes[-1] == "diamond"
