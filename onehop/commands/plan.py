@@ -27,16 +27,11 @@ def plan(
     as_json: bool,
 ) -> int:
     """Find the way once; exit status 1 when the goal was not reached."""
-    changes = [*settings]
-    if planner is not None:
-        changes.append(f"planner.kind={planner}")
-    if cell is not None:
-        changes.append(f"map.cell={cell}")
     bundle = scenario_file.load_map_mission(
         map_file,
         scenario_file.point(start, "--start"),
         scenario_file.point(goal, "--goal"),
-        changes,
+        _changes(settings, planner, cell),
         seed,
     )
     scenario = bundle.scenario
@@ -61,6 +56,16 @@ def plan(
     return 0 if summary["reached"] else 1
 
 
+def _changes(settings: list[str], planner: str | None, cell: float | None) -> list[str]:
+    """The settings, with the options that stand for one."""
+    changes = [*settings]
+    if planner is not None:
+        changes.append(f"planner.kind={planner}")
+    if cell is not None:
+        changes.append(f"map.cell={cell}")
+    return changes
+
+
 def _shortest(
     walls: WallMap, inflation: float, start: tuple[float, float], goal: tuple[float, float]
 ) -> FloatArray | None:
@@ -75,8 +80,8 @@ def _print(summary: dict[str, Any], run: Trial, figure: Path | None) -> None:
     print(f"path           {summary['path_length_m']:.1f} m in {summary['steps']} ticks")
     shortest = summary["shortest_m"]
     if shortest:
-        ratio = summary["path_length_m"] / shortest
-        print(f"shortest       {shortest:.1f} m on the known map: {ratio:.2f} times as far")
+        ratio = f": {summary['path_length_m'] / shortest:.2f} times as far" if summary["reached"] else ""
+        print(f"shortest       {shortest:.1f} m on the known map{ratio}")
     else:
         print("shortest       none: the known map has no way for the inflated robot")
     print(f"planning       {summary['replans']} road maps, {summary['backtracks']} steps back")

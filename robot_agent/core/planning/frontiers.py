@@ -150,7 +150,7 @@ class Frontiers:
         points = memory.xy[frontiers]
         distance2 = squared_distances(points, seen.points).min(axis=1, initial=np.inf)
         beside_unseen = distance2 < self.border_reach * self.border_reach
-        still = beside_unseen & view.free(points, self.inflation)[0]
+        still = beside_unseen & view.free(points, local.roadmap.clearance)[0]
         turn = self.gaze[frontiers] - view.pose.heading
         near = elementary.lengths(*(points - view.origin).T) < PASSED_BY * self.spacing
         away = (elementary.cosines(turn) < LOOKS_AWAY) & near

@@ -177,6 +177,15 @@ def test_a_door_beside_a_long_wall_is_not_passed_by(seed: int) -> None:
 
 
 @pytest.mark.slow
+def test_a_frontier_that_no_way_can_keep_clear_is_not_turned_to_and_fro_for() -> None:
+    """It lies 0.51 m from a wall: outside of the inflation, but every way keeps 0.52 m. From one heading
+    the wall was half out of view and a way led there; turned to it, none did, and so on for 800 s.
+    """
+    ground = field(box(19, 0, 21, 24), box(19, 25.2, 21, 40), size=40.0)
+    assert_arrived(run_trial(*alone(ground, (8.0, 8.0, 0.0), (33.0, 12.0), seed=10)))
+
+
+@pytest.mark.slow
 def test_no_way_is_the_answer_for_a_closed_room_in_bounded_time() -> None:
     scenario, walls = alone(field(*CLOSED_ROOM), (60.0, 60.0, 45.0), (82.0, 82.0), limit_s=1500.0)
     scenario = replace(scenario, planner=replace(scenario.planner, patience=5.0))
