@@ -38,11 +38,15 @@ class Ground(Protocol):
 
 @dataclass(frozen=True)
 class WallMap:
-    """A map: segments (n, 4) float64 [x0, y0, x1, y1 in m], bounds (xmin, ymin, xmax, ymax) [m]."""
+    """A map: segments (n, 4) float64 [x0, y0, x1, y1 in m], bounds (xmin, ymin, xmax, ymax) [m].
+
+    reading: how the map's file was understood, for people, where that may have hidden free ground.
+    """
 
     segments: FloatArray
     bounds: Bounds
     ground: Ground
+    reading: str = ""
 
     def clearance(self, points: FloatArray) -> FloatArray:
         """Distance from each point, (n, 2), to the nearest wall, (n,) [m]; 0 in something filled."""
