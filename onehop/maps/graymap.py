@@ -75,15 +75,17 @@ def _whole(name: str, digits: bytes) -> int:
 def _raw_values(content: bytes, end: int, count: int, kind: np.dtype[Any]) -> npt.NDArray[Any]:
     """At most `count` pixels of a P5, whose header ends at `end`.
 
-    One white space separates them (Netpbm). CR LF counts as one, if that leaves enough pixels; a comment
-    line is skipped, if what follows it is the picture to the byte.
+    One white space separates them (Netpbm). CR LF counts as one if the header has other lines that end
+    so, or if that leaves enough pixels; a comment line is skipped if the picture follows it to the byte.
     """
     wanted = count * kind.itemsize
     comment = _LATE_COMMENT.match(content[end : end + _LONGEST_HEADER])
     start = end + 1
     if comment is not None and len(content) - end - comment.end() == wanted:
         start = end + comment.end()
-    elif content[end : end + 2] == b"\r\n" and len(content) - end - 2 >= wanted:
+    elif content[end : end + 2] == b"\r\n" and (
+        b"\r\n" in content[:end] or len(content) - end - 2 >= wanted
+    ):
         start = end + 2
     usable = (len(content) - start) // kind.itemsize
     return np.frombuffer(

@@ -52,15 +52,6 @@ class _Settings(NamedTuple):
     occupied: float
     free: float
 
-    def __str__(self) -> str:
-        """How the picture is read, for people."""
-        if self.mode == "raw":
-            return "mode raw"
-        return (
-            f"mode {self.mode}, negate {int(self.negate)}, "
-            f"free_thresh {self.free:g}, occupied_thresh {self.occupied:g}"
-        )
-
 
 def ros_image(name: str, content: bytes) -> str:
     """Name of the image that a map's YAML file refers to, as written there. Raises MapError."""
@@ -72,11 +63,26 @@ def ros_map(name: str, content: bytes, image: bytes) -> WallMap:
     settings = _settings(name, content)
     picture = read_image(settings.image, image)
     filled = _filled(settings, picture)
+    reading = _reading(settings, picture)
     if filled.all():
-        raise _all_wall(name, settings, picture)
+        raise MapError(f"{name}: mode", f"every pixel of {settings.image} is a wall or unknown", reading)
     free = 100.0 * (1.0 - np.count_nonzero(filled) / filled.size)
-    reading = f"{name} has {free:.2g} % free ground by {settings}"
+    reading = f"{free:.2g} % of {settings.image} is free; {reading}"
     return grid_map(filled[::-1], settings.frame, name, reading)
+
+
+def _reading(settings: _Settings, picture: Picture) -> str:
+    """Which pixels are free, for people: a map without free ground was mostly read wrongly."""
+    share = "grey / 255" if settings.negate else "1 - grey / 255"
+    rule = {
+        "raw": f"grey < {_WALL}",
+        "trinary": f"{share} <= free_thresh {settings.free:g}",
+        "scale": f"{share} < {0.5 * (settings.free + settings.occupied):g}",
+    }[settings.mode]
+    opaque = " and opaque" if picture.alpha is not None and settings.mode != "raw" else ""
+    negate = "" if settings.mode == "raw" else f", negate {int(settings.negate)}"
+    greys = f"greys from {picture.grey.min()} to {picture.grey.max()}"
+    return f"by mode {settings.mode}{negate} a pixel is free where {rule}{opaque}, and it has {greys}"
 
 
 def _filled(settings: _Settings, picture: Picture) -> BoolArray:
@@ -104,23 +110,6 @@ def _occupancy(settings: _Settings) -> npt.NDArray[np.int16]:
         part = (share[between] - free) / np.float32(settings.occupied - settings.free)
         values[between] = np.floor(part * np.float32(_OCCUPIED) + np.float32(0.5))
     return values
-
-
-def _all_wall(name: str, settings: _Settings, picture: Picture) -> MapError:
-    """A map without free ground: how its picture was read is the likely reason."""
-    problem = f"every pixel of {settings.image} is a wall or unknown by {settings}"
-    if picture.alpha is not None and settings.mode != "raw" and not (picture.alpha == 255).any():
-        return MapError(
-            f"{name}: image", problem, "no pixel is opaque, and transparent ones are unknown"
-        )
-    darkest, brightest = int(picture.grey.min()), int(picture.grey.max())
-    greys = f"its greys go from {darkest} to {brightest}"
-    if settings.mode == "raw":
-        return MapError(
-            f"{name}: mode", problem, f"{greys}, raw is free below 50: trinary reads white as free"
-        )
-    bright = f"free is {'' if settings.negate else '1 - '}grey / 255 <= free_thresh"
-    return MapError(f"{name}: negate", problem, f"{greys}, and {bright}: change negate or free_thresh")
 
 
 def _settings(name: str, content: bytes) -> _Settings:

@@ -116,6 +116,7 @@ def _require_free(walls: WallMap, where: str, x: float, y: float, inflation: flo
     if near:
         remedy += f"the nearest free point is ({near[0]}, {near[1]})"
     else:
-        remedy += f"found no place that is {inflation} m clear: make planner.inflation smaller"
-        remedy += f", or change how the map is read: {walls.reading}" if walls.reading else ""
+        remedy += f"found no place that is {inflation} m clear: "
+        remedy += f"change how the map is read ({walls.reading}), or " if walls.reading else ""
+        remedy += "make planner.inflation smaller"
     raise ScenarioError(where, problem, remedy)
