@@ -27,7 +27,10 @@ _DECODER_ERRORS = (
 _RUN_LENGTH = (1, 2)
 """Kinds of BMP compression that Pillow unpacks byte by byte in Python: minutes for a large map."""
 
-_ROWS_AT_ONCE = 1 << 22
+_DENSEST = {"PNG": 8 * 1032, "BMP": 8}
+"""Pixels that a byte can hold: 1 bit each, and deflate packs at most 1032 bytes into one."""
+
+_PIXELS_AT_ONCE = 1 << 22
 """Pixels whose colours are made grey at once: bounds the memory to some 100 MB."""
 
 
@@ -50,6 +53,12 @@ def _decode(
         try:
             picture = opener(io.BytesIO(content))
             check_size(name, *picture.size)
+            if picture.width * picture.height > _DENSEST[kind] * len(content):
+                raise MapError(
+                    name,
+                    f"{picture.width} x {picture.height} pixels in {len(content)} bytes",
+                    "a whole file",
+                )
             if kind == "BMP" and picture.info.get("compression") in _RUN_LENGTH:
                 raise MapError(name, "a run-length coded BMP", "an uncompressed BMP, PNG or PGM")
             picture.load()
@@ -77,7 +86,7 @@ def _grey(pixels: GreyArray) -> GreyArray:
     """Luma of pixels (rows, columns, 3 or 4), (rows, columns)."""
     rows, columns, _ = pixels.shape
     grey = np.empty((rows, columns), dtype=np.uint8)
-    step = max(1, _ROWS_AT_ONCE // columns)
+    step = max(1, _PIXELS_AT_ONCE // columns)
     for first in range(0, rows, step):
         red, green, blue = np.moveaxis(pixels[first : first + step, :, :3].astype(np.uint32), 2, 0)
         luma = ((299 * red + 587 * green + 114 * blue) * 257 + 500) // 1000

@@ -111,7 +111,7 @@ def _require_free(walls: WallMap, where: str, x: float, y: float, inflation: flo
     problem, remedy = f"({x}, {y}) is not {inflation} m clear of obstacles", ""
     if not (xmin <= x <= xmax and ymin <= y <= ymax):
         problem = f"({x}, {y}) is outside of the map"
-        remedy = f"x from {xmin} to {xmax} and y from {ymin} to {ymax}; "
+        remedy = f"x from {xmin:.2f} to {xmax:.2f} and y from {ymin:.2f} to {ymax:.2f}; "
     near = walls.nearest_free(min(max(x, xmin), xmax), min(max(y, ymin), ymax), inflation)
     if near:
         remedy += f"the nearest free point is ({near[0]}, {near[1]})"

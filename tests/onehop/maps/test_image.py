@@ -130,9 +130,21 @@ def test_a_decompression_bomb_is_refused_by_its_header() -> None:
         read_image("m.png", bomb)
 
 
+def test_a_picture_larger_than_its_bytes_can_hold_is_refused_before_it_takes_memory() -> None:
+    header = struct.pack(">IIBBBBB", 8000, 8000, 8, 6, 0, 0, 0)
+    content = b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"12"))
+    with pytest.raises(MapError, match="8000 x 8000 pixels in 55 bytes"):
+        read_image("m.png", content)
+
+
+def test_a_picture_that_deflate_packs_best_is_read() -> None:
+    picture = read_image("m.png", encoded(np.zeros((3000, 3000)).tolist(), "L", "PNG", compress_level=9))
+    assert picture.grey.shape == (3000, 3000)
+
+
 def test_a_large_colour_picture_is_made_grey_in_pieces(monkeypatch: pytest.MonkeyPatch) -> None:
     pixels = np.random.default_rng(5).integers(0, 256, (40, 30, 3), dtype=np.uint8)
     content = encoded(pixels.tolist(), "RGB", "PNG")
     whole = read_image("m.png", content).grey
-    monkeypatch.setattr("onehop.maps.image._ROWS_AT_ONCE", 100)
+    monkeypatch.setattr("onehop.maps.image._PIXELS_AT_ONCE", 100)
     np.testing.assert_array_equal(read_image("m.png", content).grey, whole)
