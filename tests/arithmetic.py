@@ -53,12 +53,14 @@ EXACT_MATH = EXACT_COMPILED | _words(
 
 EXACT_NUMPY = _words(
     """
-    bool_ dtype errstate float32 float64 int32 int64 int8 integer intp ndarray newaxis typing uint8
+    bool_ dtype errstate float32 float64 int16 int32 int64 int8 integer intp ndarray newaxis typing
+    uint32 uint8
     random.Generator random.PCG64 random.SeedSequence e inf nan pi
     arange array array_equal asarray ascontiguousarray broadcast_to column_stack concatenate copy empty
     empty_like eye frombuffer fromiter full full_like hstack linspace meshgrid ones ones_like pad repeat
-    reshape roll stack tile vstack zeros zeros_like
-    all any argmax argmin argsort argwhere bincount clip diff digitize flatnonzero flip isin lexsort
+    moveaxis reshape roll stack tile vstack zeros zeros_like
+    all any argmax argmin argsort argwhere bincount clip count_nonzero diff digitize flatnonzero flip
+    isin lexsort
     nonzero searchsorted sort split take unique where
     abs absolute add ceil cumsum divide equal floor floor_divide greater isfinite isinf isnan less
     logical_and logical_not logical_or max maximum mean min minimum mod multiply negative prod remainder

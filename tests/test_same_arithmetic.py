@@ -32,6 +32,7 @@ ALLOWED = [
         "np.arctan2(left, ahead)",
         "becomes the number of a beam; what lies right on a beam is a millionth of a beam off the edge",
     ),
+    ("graymap", "_plain_values", ANY, "reads whole numbers"),
     (
         "laser",
         "_look_at_disc",

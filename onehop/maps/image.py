@@ -1,83 +1,94 @@
-"""Pictures in memory: portable graymaps (P2, P5) and PNG, as brightness per channel."""
+"""Pictures of maps from their bytes: graymaps (P2, P5), PNG and BMP, which are what map_saver writes.
 
-import re
-from typing import NamedTuple
+Colours become grey as in GraphicsMagick, through which nav2_map_server reads: luma after ITU-R BT.601
+with 16 bits, rounded down to 8. Of PNGs with 16 bits a colour channel only the upper 8 count.
+"""
+
+import io
+import struct
+import warnings
+import zlib
 
 import numpy as np
-from PIL import ImageFile, UnidentifiedImageError
+from PIL.BmpImagePlugin import BmpImageFile
+from PIL.Image import Image
+from PIL.PngImagePlugin import PngImageFile
 
-from onehop.contracts.arrays import FloatArray
 from onehop.contracts.errors import MapError
+from onehop.maps.graymap import read_graymap
+from onehop.maps.picture import GreyArray, Picture, check_size
+
+_DECODER_ERRORS = (
+    OSError, SyntaxError, ValueError, TypeError, LookupError, AttributeError, AssertionError,
+    EOFError, ArithmeticError, MemoryError, SystemError, struct.error, zlib.error,
+)  # fmt: skip
+"""What Pillow raises on damaged pictures."""
+
+_RUN_LENGTH = (1, 2)
+"""Kinds of BMP compression that Pillow unpacks byte by byte in Python: minutes for a large map."""
+
+_DENSEST = {"PNG": 8 * 1032, "BMP": 8}
+"""Pixels that a byte can hold: 1 bit each, and deflate packs at most 1032 bytes into one."""
+
+_PIXELS_AT_ONCE = 1 << 22
+"""Pixels whose colours are made grey at once: bounds the memory to some 100 MB."""
 
 
-class Image(NamedTuple):
-    """colours: (rows, columns, channels) float64 in 0..1, row 0 at the top; alpha likewise, or None."""
-
-    colours: FloatArray
-    alpha: FloatArray | None
-
-
-_HEADER = re.compile(rb"(P[25])" + rb"(?:\s*#[^\n]*\n|\s)+(\d+)" * 3 + rb"(?:[ \t]*#[^\n]*\n|\s)")
-"""Magic, width, height and largest value of a graymap; comments may stand between them."""
-
-_LARGEST = 1 << 26
-"""Pixels of the largest picture that is read."""
-
-
-def read_image(name: str, content: bytes) -> Image:
+def read_image(name: str, content: bytes) -> Picture:
     """Decode a picture from its bytes, whatever its name ends in. Raises MapError."""
     if content.startswith((b"P2", b"P5")):
-        return _read_graymap(name, content)
+        return Picture(read_graymap(name, content), None)
     if content.startswith(b"\x89PNG"):
-        return _read_png(name, content)
-    raise MapError(name, "neither PGM nor PNG", "a graymap (P2 or P5) or a PNG picture")
+        return _decode(name, "PNG", PngImageFile, content)
+    if content.startswith(b"BM"):
+        return _decode(name, "BMP", BmpImageFile, content)
+    raise MapError(name, "neither PGM nor PNG nor BMP", "a graymap (P2 or P5), a PNG or a BMP picture")
 
 
-def _read_graymap(name: str, content: bytes) -> Image:
-    header = _HEADER.match(content)
-    if header is None:
-        raise MapError(name, "a broken PGM header", "P2 or P5, width, height, largest value")
-    magic = header[1]
-    width, height, largest = (int(number[:9]) for number in header.groups()[1:])
-    if not (0 < largest < 65536 and 0 < width * height <= _LARGEST):
-        raise MapError(
-            name, f"{width} x {height} pixels up to {largest}", "a size above 0 and values up to 65535"
-        )
-    values = (_ascii_values if magic == b"P2" else _raw_values)(name, content[header.end() :], largest)
-    if len(values) < width * height:
-        raise MapError(name, f"{len(values)} pixels", f"{width} x {height} = {width * height}")
-    grey = values[: width * height].reshape(height, width, 1)
-    if grey.max() > largest:
-        raise MapError(
-            name, f"a pixel of {int(grey.max())}", f"no more than {largest}, as its header says"
-        )
-    return Image(grey / float(largest), None)
+def _decode(
+    name: str, kind: str, opener: type[PngImageFile] | type[BmpImageFile], content: bytes
+) -> Picture:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        try:
+            picture = opener(io.BytesIO(content))
+            check_size(name, *picture.size)
+            if picture.width * picture.height > _DENSEST[kind] * len(content):
+                raise MapError(
+                    name,
+                    f"{picture.width} x {picture.height} pixels in {len(content)} bytes",
+                    "a whole file",
+                )
+            if kind == "BMP" and picture.info.get("compression") in _RUN_LENGTH:
+                raise MapError(name, "a run-length coded BMP", "an uncompressed BMP, PNG or PGM")
+            picture.load()
+            return _picture(picture)
+        except _DECODER_ERRORS as error:
+            reason = " ".join(str(error).split())[:80] or type(error).__name__
+            raise MapError(name, f"not a whole {kind} ({reason})", f"a {kind} picture") from None
 
 
-def _ascii_values(name: str, body: bytes, _largest: int) -> FloatArray:
-    words = re.sub(rb"#[^\n]*", b"", body).split()
-    try:
-        return np.array(words, dtype="S9").astype(np.float64)
-    except ValueError:
-        raise MapError(name, "a pixel that is no number", "whole numbers (P2)") from None
-
-
-def _raw_values(_name: str, body: bytes, largest: int) -> FloatArray:
-    kind = np.dtype(">u2") if largest > 255 else np.dtype(np.uint8)
-    usable = len(body) - len(body) % kind.itemsize
-    return np.frombuffer(body[:usable], dtype=kind).astype(np.float64)
-
-
-def _read_png(name: str, content: bytes) -> Image:
-    parser = ImageFile.Parser()
-    try:
-        parser.feed(content)
-        picture = parser.close()
-    except (OSError, SyntaxError, ValueError, UnidentifiedImageError) as error:
-        raise MapError(name, f"not a whole PNG ({error})", "a PNG picture") from None
+def _picture(picture: Image) -> Picture:
+    key = picture.info.get("transparency")
     if picture.mode.startswith("I"):
-        return Image(np.asarray(picture, dtype=np.float64)[:, :, None] / 65535.0, None)
-    opaque = "A" not in picture.mode and "transparency" not in picture.info
-    grey = picture.mode in ("1", "L", "LA")
-    pixels = np.asarray(picture.convert("LA" if grey else "RGBA"), dtype=np.float64) / 255.0
-    return Image(pixels[:, :, :-1], None if opaque else pixels[:, :, -1])
+        values = np.asarray(picture)
+        alpha = None if key is None else np.where(values == key, 0, 255).astype(np.uint8)
+        return Picture((values // 257).astype(np.uint8), alpha)
+    if "A" not in picture.mode and key is None:
+        if picture.mode in ("1", "L"):
+            return Picture(np.asarray(picture.convert("L")), None)
+        return Picture(_grey(np.asarray(picture.convert("RGB"))), None)
+    pixels = np.asarray(picture.convert("RGBA"))
+    return Picture(_grey(pixels), pixels[:, :, 3].copy())
+
+
+def _grey(pixels: GreyArray) -> GreyArray:
+    """Luma of pixels (rows, columns, 3 or 4), (rows, columns)."""
+    rows, columns, _ = pixels.shape
+    grey = np.empty((rows, columns), dtype=np.uint8)
+    step = max(1, _PIXELS_AT_ONCE // columns)
+    for first in range(0, rows, step):
+        red, green, blue = np.moveaxis(pixels[first : first + step, :, :3].astype(np.uint32), 2, 0)
+        luma = ((299 * red + 587 * green + 114 * blue) * 257 + 500) // 1000
+        grey[first : first + step] = luma // 257
+    return grey

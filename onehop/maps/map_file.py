@@ -13,6 +13,9 @@ from onehop.maps.polygons import polygon_map
 from onehop.maps.ros import ros_image, ros_map
 from onehop.maps.walls import WallMap
 
+LARGEST_FILE = 1 << 28
+"""Bytes of the largest file of a map that is read: a picture of the largest size as text."""
+
 
 def map_files(name: str, content: bytes) -> tuple[str, ...]:
     """Names, as the map file itself writes them, of further files that the map `name` needs.
@@ -30,14 +33,21 @@ def load_map(section: MapSection, files: Mapping[str, bytes]) -> WallMap:
     """
     if not section.file:
         return polygon_map(section)
-    content = files[section.file]
+    content = _content(files, section.file)
     if _is_ros(section.file):
-        return ros_map(section.file, content, files[ros_image(section.file, content)])
+        image = ros_image(section.file, content)
+        return ros_map(section.file, content, _content(files, image))
     if section.file.endswith(".map"):
         return movingai_map(section.file, content, section.cell)
     raise MapError(
         section.file, "no known kind of map", "a ROS map ends in .yaml, a MovingAI grid in .map"
     )
+
+
+def _content(files: Mapping[str, bytes], name: str) -> bytes:
+    if name not in files:
+        raise MapError(name, "missing", "a log or a scenario brings all files of its map")
+    return files[name]
 
 
 def _is_ros(name: str) -> bool:

@@ -20,6 +20,8 @@ def movingai_map(name: str, content: bytes, cell: float) -> WallMap:
     """The map of a .map file with `cell` metres a cell. Raises MapError."""
     lines = content.replace(b"\r\n", b"\n").rstrip().split(b"\n")
     width, height, first = _header(name, lines)
+    if width * height > _LARGEST:
+        raise MapError(name, f"{width} x {height} cells", f"at most {_LARGEST} in all")
     rows = lines[first:]
     if len(rows) != height:
         raise MapError(name, f"{len(rows)} rows of cells", f"the header says height {height}")
@@ -38,7 +40,9 @@ def movingai_map(name: str, content: bytes, cell: float) -> WallMap:
             f"unknown terrain {chr(cells[row_up, column])!r}",
             "terrain is one of . G S @ O T W",
         )
-    return grid_map(filled, GridFrame(0.0, 0.0, 0.0, cell))
+    if filled.all():
+        raise MapError(name, "every cell is a wall", "ground is . G or S")
+    return grid_map(filled, GridFrame(0.0, 0.0, 0.0, cell), name)
 
 
 def _header(name: str, lines: list[bytes]) -> tuple[int, int, int]:
@@ -63,7 +67,8 @@ def _header(name: str, lines: list[bytes]) -> tuple[int, int, int]:
 
 
 def _size(where: str, words: list[str]) -> int:
-    value = int(words[1]) if words[1].isascii() and words[1].isdigit() else 0
+    digits = words[1] if words[1].isascii() and words[1].isdigit() and len(words[1]) < 10 else "0"
+    value = int(digits)
     if not 0 < value <= _LARGEST:
         raise MapError(where, f"{words[0]} {words[1][:20]!r}", "a whole number of cells above 0")
     return value

@@ -28,6 +28,10 @@ _RING_POINTS = 240
 """Directions in which a ring is tried at most."""
 
 
+_PROBE_DIRECTIONS, _PROBE_REACHES = 16, (0.25, 0.5, 0.75, 0.95)
+"""Places in a disc (in parts of its radius) that are looked at before its walls are measured."""
+
+
 class Ground(Protocol):
     """What is filled between the segments."""
 
@@ -38,11 +42,15 @@ class Ground(Protocol):
 
 @dataclass(frozen=True)
 class WallMap:
-    """A map: segments (n, 4) float64 [x0, y0, x1, y1 in m], bounds (xmin, ymin, xmax, ymax) [m]."""
+    """A map: segments (n, 4) float64 [x0, y0, x1, y1 in m], bounds (xmin, ymin, xmax, ymax) [m].
+
+    reading: how the map's file was understood, for people, where that may have hidden free ground.
+    """
 
     segments: FloatArray
     bounds: Bounds
     ground: Ground
+    reading: str = ""
 
     def clearance(self, points: FloatArray) -> FloatArray:
         """Distance from each point, (n, 2), to the nearest wall, (n,) [m]; 0 in something filled."""
@@ -84,11 +92,26 @@ class WallMap:
             angles = np.arange(count, dtype=np.float64) * (math.tau / count)
             offsets = ring * np.column_stack((elementary.cosines(angles), elementary.sines(angles)))
             points = np.round(np.array([x, y]) + offsets, 2)
+            points = points[self._hopeful(points, radius)]
             fits = np.flatnonzero(self.free(points, radius))
             if len(fits):
                 return float(points[fits[0], 0]), float(points[fits[0], 1])
             ring = max(ring + _RING_STEP, ring * _RING_GROWTH)
         return None
+
+    def _hopeful(self, points: FloatArray, radius: float) -> BoolArray:
+        """Which discs around points, (n, 2), have nothing solid in a few places well within them, (n,).
+
+        Solid ground in a disc means a wall in it, so that the others cannot fit: a million walls need
+        not be measured for them.
+        """
+        angles = np.arange(_PROBE_DIRECTIONS, dtype=np.float64) * (math.tau / _PROBE_DIRECTIONS)
+        directions = np.column_stack((elementary.cosines(angles), elementary.sines(angles)))
+        hopeful = ~self.ground.solid(points)
+        for reach in _PROBE_REACHES:
+            for offset in radius * reach * directions:
+                hopeful &= ~self.ground.solid(points + offset)
+        return hopeful
 
 
 def segment_distances(points: FloatArray, segments: FloatArray) -> FloatArray:

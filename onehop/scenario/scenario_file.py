@@ -4,7 +4,9 @@ Every wrong key, type, value or unreachable file ends in one ScenarioError that 
 says what would be right. The world's own checks (a start inside an obstacle) come when it is built.
 """
 
+import errno
 import math
+import stat
 import tomllib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -12,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from onehop.contracts.errors import ScenarioError
-from onehop.maps.map_file import map_files
+from onehop.maps.map_file import LARGEST_FILE, map_files
 from onehop.scenario.bundle import Bundle
 from onehop.scenario.changes import apply_change
 from onehop.scenario.structure import structure
@@ -120,18 +122,28 @@ def _read_toml(path: Path) -> dict[str, Any]:
 
 
 def _read_map_files(name: str, directory: Path, origin: str) -> dict[str, bytes]:
-    files: dict[str, bytes] = {}
-    wanted = [name] if name else []
-    while wanted:
-        current = wanted.pop()
-        location = directory / current
-        try:
-            files[current] = location.read_bytes()
-        except OSError as error:
-            raise ScenarioError(
-                f"{origin}: map.file",
-                f"{location}: {error.strerror or 'cannot be read'}",
-                "a ROS map .yaml, a MovingAI .map, or polygons in the scenario",
-            ) from None
-        wanted += [name for name in map_files(current, files[current]) if name not in files]
+    """The map's file and those that it names, by their names; relative ones lie beside it."""
+    if not name:
+        return {}
+    location = directory / name
+    kinds = "a ROS map .yaml, a MovingAI .map, or polygons in the scenario"
+    files = {name: _read_map_file(location, f"{origin}: map.file", kinds)}
+    for further in map_files(name, files[name]):
+        remedy = f"an image that exists, named absolutely or from the folder of {location.name}"
+        files[further] = _read_map_file(location.parent / further, f"{location}: image", remedy)
     return files
+
+
+def _read_map_file(location: Path, where: str, remedy: str) -> bytes:
+    shown = str(location) if str(location).isprintable() else ascii(str(location))
+    try:
+        if not stat.S_ISREG(location.stat().st_mode):
+            raise OSError(errno.EINVAL, "not a regular file")
+        with location.open("rb") as file:
+            content = file.read(LARGEST_FILE + 1)
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        reason = (isinstance(error, OSError) and error.strerror) or "cannot be read"
+        raise ScenarioError(where, f"{shown}: {reason}", remedy) from None
+    if len(content) > LARGEST_FILE:
+        raise ScenarioError(where, f"{shown}: larger than {LARGEST_FILE} bytes", "a smaller map")
+    return content

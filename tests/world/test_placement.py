@@ -10,8 +10,16 @@ from hypothesis import strategies as st
 
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.scenario import Scenario
-from onehop.contracts.sections import GoalSection, MapSection, StartSection, TeamSection
+from onehop.contracts.sections import (
+    GoalSection,
+    MapSection,
+    PlannerSection,
+    StartSection,
+    TeamSection,
+)
+from onehop.maps.grid import GridFrame, grid_map
 from onehop.maps.map_file import load_map
+from onehop.maps.walls import WallMap
 from world_server.core.placement import start_poses
 
 WALL = ((20.0, 0.0), (20.5, 0.0), (20.5, 36.0), (20.0, 36.0))
@@ -82,6 +90,12 @@ def test_given_poses_are_in_degrees_and_in_order_of_id() -> None:
         ({"start": StartSection(20.2, 20.0)}, "start.x, start.y", "nearest free point"),
         ({"start": StartSection(19.7, 20.0)}, "start.x, start.y", "(19."),
         ({"start": StartSection(-3.0, 20.0)}, "start.x, start.y", "nearest free point is (0.5"),
+        (
+            {"start": StartSection(-3.0, 20.0)},
+            "start.x, start.y",
+            "x from 0.00 to 40.00 and y from 0.00",
+        ),
+        ({"goal": GoalSection(35.0, 1e7)}, "goal.x, goal.y", "nearest free point is (35.0, 39.5)"),
         ({"goal": GoalSection(20.2, 20.0)}, "goal.x, goal.y", "nearest free point"),
         ({"start": StartSection(10.0, 10.0, radius=1.0)}, "start.radius", "fewer robots"),
         (
@@ -120,8 +134,42 @@ def test_the_suggested_point_is_accepted() -> None:
 
 def test_a_map_too_narrow_for_any_robot_is_refused() -> None:
     tight = load_map(MapSection(width=0.8, height=40.0), {})
-    with pytest.raises(ScenarioError, match=r"nowhere on this map is 0.5 m clear"):
-        start_poses(PLAN, tight)
+    with pytest.raises(ScenarioError, match=r"found no place that is 0.5 m clear: make planner"):
+        start_poses(replace(PLAN, goal=GoalSection(0.4, 3.0)), tight)
+
+
+def grid_of(rows: list[str], frame: GridFrame, reading: str = "") -> WallMap:
+    """A map of cells of 1 m, the top row first, x a wall."""
+    filled = np.array([[sign == "x" for sign in row] for row in reversed(rows)])
+    return grid_map(filled, frame, reading=reading)
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.7])
+def test_a_point_outside_of_a_far_map_is_told_its_bounds(yaw: float) -> None:
+    """UTM coordinates: a map that lies 5,400 km from the point."""
+    far = grid_of(["...."] * 4, GridFrame(500000.0, 5400000.0, yaw, 1.0))
+    with pytest.raises(ScenarioError) as refusal:
+        start_poses(PLAN, far)
+    assert refusal.value.problem == "(35.0, 35.0) is outside of the map"
+    xmin, ymin, xmax, ymax = far.bounds
+    assert (
+        f"x from {xmin:.2f} to {xmax:.2f} and y from {ymin:.2f} to {ymax:.2f}; the"
+        in refusal.value.remedy
+    )
+    words = refusal.value.remedy.partition("the nearest free point is ")[2].strip("()").split(", ")
+    assert far.is_free(float(words[0]), float(words[1]), 0.5)
+
+
+def test_a_map_without_room_says_how_it_was_read() -> None:
+    frame, reading = GridFrame(0.0, 0.0, 0.0, 1.0), "40 % of m.pgm is free; by mode raw"
+    narrow = grid_of(["x.x.", ".x.x"], frame, reading)
+    tight = replace(PLAN, goal=GoalSection(1.0, 1.0), planner=PlannerSection(inflation=0.9))
+    with pytest.raises(ScenarioError) as refusal:
+        start_poses(tight, narrow)
+    assert refusal.value.remedy == (
+        "found no place that is 0.9 m clear: change how the map is read "
+        "(40 % of m.pgm is free; by mode raw), or make planner.inflation smaller"
+    )
 
 
 def test_a_room_too_small_for_the_team_is_refused() -> None:

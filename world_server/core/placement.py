@@ -107,11 +107,16 @@ def _given_poses(scenario: Scenario, walls: WallMap) -> FloatArray:
 def _require_free(walls: WallMap, where: str, x: float, y: float, inflation: float) -> None:
     if walls.is_free(x, y, inflation):
         return
-    near = walls.nearest_free(x, y, inflation)
-    raise ScenarioError(
-        where,
-        f"({x}, {y}) is not {inflation} m clear of obstacles",
-        f"the nearest free point is ({near[0]}, {near[1]})"
-        if near
-        else f"nowhere on this map is {inflation} m clear: make planner.inflation smaller",
-    )
+    xmin, ymin, xmax, ymax = walls.bounds
+    problem, remedy = f"({x}, {y}) is not {inflation} m clear of obstacles", ""
+    if not (xmin <= x <= xmax and ymin <= y <= ymax):
+        problem = f"({x}, {y}) is outside of the map"
+        remedy = f"x from {xmin:.2f} to {xmax:.2f} and y from {ymin:.2f} to {ymax:.2f}; "
+    near = walls.nearest_free(min(max(x, xmin), xmax), min(max(y, ymin), ymax), inflation)
+    if near:
+        remedy += f"the nearest free point is ({near[0]}, {near[1]})"
+    else:
+        remedy += f"found no place that is {inflation} m clear: "
+        remedy += f"change how the map is read ({walls.reading}), or " if walls.reading else ""
+        remedy += "make planner.inflation smaller"
+    raise ScenarioError(where, problem, remedy)

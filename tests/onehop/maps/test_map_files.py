@@ -3,7 +3,6 @@
 import math
 import os
 import struct
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -17,89 +16,24 @@ from onehop.contracts.sections import MapSection
 from onehop.maps.grid import GridFrame, grid_map
 from onehop.maps.map_file import load_map, map_files
 from onehop.maps.walls import WallMap
+from tests.onehop.maps.pictures import GREYS, YAML, cells, png, ros
 
 MAPS = Path(os.environ.get("ONEHOP_MAPS", Path(__file__).parents[4] / "shared" / "maps"))
 needs_maps = pytest.mark.skipif(not MAPS.is_dir(), reason="no folder of sample maps (ONEHOP_MAPS)")
-
-YAML = """image: m.pgm
-resolution: 0.5
-origin: [-1.0, -2.0, 0.0]
-negate: 0
-occupied_thresh: 0.65
-free_thresh: 0.196
-"""
-GREYS = bytes([254, 0, 205, 254, 254, 254])
-PGM = b"P5\n# made by a mapper\n3 2\n255\n" + GREYS
-
-
-def ros(yaml: str = YAML, image: bytes = PGM) -> WallMap:
-    names = map_files("m.yaml", yaml.encode())
-    return load_map(MapSection(file="m.yaml"), {"m.yaml": yaml.encode(), names[0]: image})
 
 
 def movingai(text: str, cell: float = 1.0) -> WallMap:
     return load_map(MapSection(file="m.map", cell=cell), {"m.map": text.encode()})
 
 
-def picture(walls: WallMap, cell: float = 0.5) -> list[str]:
-    """The map's cells as text, the top row first, x a wall."""
-    xmin, ymin, xmax, ymax = walls.bounds
-    columns, rows = round((xmax - xmin) / cell), round((ymax - ymin) / cell)
-    return [
-        "".join(
-            "." if walls.is_free(xmin + (column + 0.5) * cell, ymin + (row + 0.5) * cell) else "x"
-            for column in range(columns)
-        )
-        for row in reversed(range(rows))
-    ]
-
-
-def png(rows: list[list[tuple[int, ...]]], colour_type: int) -> bytes:
-    """A PNG with 8 bits a channel (PNG specification 5, 11)."""
-
-    def chunk(kind: bytes, data: bytes) -> bytes:
-        body = kind + data
-        return struct.pack(">I", len(data)) + body + struct.pack(">I", zlib.crc32(body))
-
-    header = struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, colour_type, 0, 0, 0)
-    lines = b"".join(b"\0" + bytes(value for pixel in row for value in pixel) for row in rows)
-    return (
-        b"\x89PNG\r\n\x1a\n"
-        + chunk(b"IHDR", header)
-        + chunk(b"IDAT", zlib.compress(lines))
-        + chunk(b"IEND", b"")
-    )
-
-
 def test_a_ros_map_lies_at_its_origin_with_its_first_row_on_top() -> None:
     walls = ros()
     assert walls.bounds == (-1.0, -2.0, 0.5, -1.0)
-    assert picture(walls) == [".xx", "..."]
+    assert cells(walls) == [".xx", "..."]
 
 
 def test_the_mode_is_trinary_unless_stated() -> None:
-    assert picture(ros()) == picture(ros(YAML + "mode: trinary\n"))
-
-
-@pytest.mark.parametrize(("free_thresh", "row"), [("0.196", ".xx"), ("0.25", ".x.")])
-def test_grey_205_is_unknown_or_free_by_free_thresh(free_thresh: str, row: str) -> None:
-    """(255 - 205) / 255 = 0.19608: the reason for ROS's odd default of 0.196."""
-    assert picture(ros(YAML.replace("0.196", free_thresh)))[0] == row
-
-
-def test_negate_turns_brightness_round() -> None:
-    assert picture(ros(YAML.replace("negate: 0", "negate: 1"))) == ["x.x", "xxx"]
-
-
-def test_scale_mode_calls_half_occupied_a_wall() -> None:
-    yaml = YAML.replace("0.65", "0.9").replace("0.196", "0.1") + "mode: scale\n"
-    image = b"P2 4 1 255  255 140 115 0"
-    assert picture(ros(yaml, image)) == ["..xx"]
-
-
-def test_raw_mode_reads_occupancy_of_a_hundred_and_more_is_unknown() -> None:
-    image = b"P2 5 1 255  0 49 50 100 255"
-    assert picture(ros(YAML + "mode: raw\n", image)) == ["..xxx"]
+    assert cells(ros()) == cells(ros(YAML + "mode: trinary\n"))
 
 
 @pytest.mark.parametrize(
@@ -117,18 +51,6 @@ def test_the_same_picture_in_any_format_is_the_same_map(image: bytes) -> None:
     np.testing.assert_array_equal(ros(image=image).segments, ros().segments)
 
 
-def test_transparent_pixels_are_no_free_ground_in_scale_mode() -> None:
-    image = png([[(255, 255, 255, 255), (255, 255, 255, 0)]], 6)
-    assert picture(ros(YAML + "mode: scale\n", image)) == [".x"]
-
-
-def test_alpha_counts_as_an_inverted_channel_in_trinary_mode() -> None:
-    """nav2 map_io: opaque white is (1 + 1 + 1 + 0) / 4 = 0.75 bright, hence unknown at 0.196."""
-    image = png([[(255, 255, 255, 255)]], 6)
-    assert picture(ros(image=image)) == ["x"]
-    assert picture(ros(YAML.replace("0.196", "0.3"), image)) == ["."]
-
-
 def test_the_origin_turns_the_map() -> None:
     walls = ros(YAML.replace("0.0]", f"{math.pi / 2}]"))
     assert walls.bounds == pytest.approx((-2.0, -2.0, -1.0, -0.5))
@@ -137,60 +59,13 @@ def test_the_origin_turns_the_map() -> None:
     assert walls.is_free(-1.25, -1.25)
 
 
-@pytest.mark.parametrize(
-    ("yaml", "where", "problem"),
-    [
-        ("a: [", "m.yaml", "not YAML"),
-        ("- 1", "m.yaml", "not a table of keys"),
-        (YAML.replace("image: m.pgm", "image: 3"), "m.yaml: image", "3"),
-        (YAML + "mode: fancy", "m.yaml: mode", "'fancy'"),
-        (YAML + "mode: [raw]", "m.yaml: mode", "raw"),
-        (YAML.replace("negate: 0", "negate: maybe"), "m.yaml: negate", "'maybe'"),
-        (YAML.replace("resolution: 0.5", "resolution: 0"), "m.yaml: resolution", "0"),
-        (YAML.replace("resolution: 0.5", "resolution: fine"), "m.yaml: resolution", "'fine'"),
-        (YAML.replace("resolution: 0.5", ""), "m.yaml: resolution", "None"),
-        (YAML.replace("-2.0, ", ""), "m.yaml: origin", "-1.0, 0.0"),
-        (YAML.replace("-2.0", ".nan"), "m.yaml: origin", "nan"),
-        (YAML.replace("0.196", "0.7"), "m.yaml: free_thresh", "0.7"),
-    ],
-)
-def test_a_bad_yaml_file_is_refused_by_key(yaml: str, where: str, problem: str) -> None:
-    with pytest.raises(MapError) as refusal:
-        map_files("m.yaml", yaml.encode())
-    assert refusal.value.where == where
-    assert problem in refusal.value.problem
-    assert "\n" not in str(refusal.value)
-
-
-@pytest.mark.parametrize(
-    ("image", "problem"),
-    [
-        (b"", "neither PGM nor PNG"),
-        (b"GIF89a", "neither PGM nor PNG"),
-        (b"P5\n3 x\n", "broken PGM header"),
-        (b"P5 3 2 0\n", "3 x 2 pixels up to 0"),
-        (b"P5 99999 99999 255\n", "99999 x 99999"),
-        (PGM[:-1], "5 pixels"),
-        (b"P2 3 1 255 1 2 three", "no number"),
-        (b"P2 1 1 15 16", "a pixel of 16"),
-        (png([[(1,)]], 0)[:40], "not a whole PNG"),
-        (b"\x89PNG\r\n\x1a\n", "not a whole PNG"),
-    ],
-)
-def test_a_bad_picture_is_refused(image: bytes, problem: str) -> None:
-    with pytest.raises(MapError, match=problem) as refusal:
-        ros(image=image)
-    assert refusal.value.where == "m.pgm"
-    assert "\n" not in str(refusal.value)
-
-
 GRID = "type octile\nheight 2\nwidth 3\nmap\n.G@\nSTW\n"
 
 
 def test_a_movingai_grid_has_its_first_row_on_top_and_its_corner_at_the_origin() -> None:
     walls = movingai(GRID)
     assert walls.bounds == (0.0, 0.0, 3.0, 2.0)
-    assert picture(walls, 1.0) == ["..x", ".xx"]
+    assert cells(walls, 1.0) == ["..x", ".xx"]
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,16 @@
 """Polygon maps and the questions that a map answers."""
 
 import math
+import time
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from onehop.contracts.sections import MapSection
+from onehop.maps.grid import GridFrame, grid_map
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap, gap_between, segment_distances
 
@@ -59,6 +62,32 @@ def test_nearest_free_point_is_near_and_free(square_in_a_yard: WallMap) -> None:
     assert near is not None
     assert square_in_a_yard.is_free(*near, 0.5)
     assert math.dist(near, (5.0, 5.9)) <= 0.6 + 0.1
+
+
+@settings(max_examples=50, deadline=None)
+@given(
+    filled=arrays(np.bool_, st.tuples(st.integers(1, 8), st.integers(1, 8))),
+    place=st.tuples(st.integers(0, 799), st.integers(0, 799)),
+    radius=st.floats(0.01, 3.0),
+)
+def test_a_point_with_room_is_its_own_nearest_free_point(
+    filled: np.ndarray[tuple[int, int], np.dtype[np.bool_]], place: tuple[int, int], radius: float
+) -> None:
+    """Nothing that fits is passed over by looking at a few places in the disc first."""
+    walls = grid_map(filled, GridFrame(0.0, 0.0, 0.0, 1.0))
+    x, y = place[0] / 100.0, place[1] / 100.0
+    near = walls.nearest_free(x, y, radius)
+    assert near is None or walls.is_free(*near, radius)
+    assert (near == (x, y)) is walls.is_free(x, y, radius)
+
+
+def test_a_map_of_noise_is_searched_within_seconds() -> None:
+    """600,000 walls, and no place for the disc."""
+    noise = np.random.default_rng(0).random((1100, 1100)) < 0.5
+    walls = grid_map(noise, GridFrame(0.0, 0.0, 0.0, 0.05))
+    began = time.process_time()
+    assert walls.nearest_free(20.0, 20.0, 0.5) is None
+    assert time.process_time() - began < 20.0
 
 
 def test_a_map_without_room_has_no_nearest_free_point(square_in_a_yard: WallMap) -> None:
