@@ -43,7 +43,8 @@ from robot_agent.core.motion.tracking import sampled
 from robot_agent.core.motion.trail import Trail
 
 DRAWS = 64
-"""Random numbers for a follower's jams, used in turn: more than any mission has seen jams of a robot."""
+"""Random numbers for a follower's jams, used in turn. They only break ties between robots, so that it
+does not matter when they come round again."""
 
 
 class RobotMotion:
