@@ -1,4 +1,4 @@
-"""Compiled kernels: kept on disk from run to run, or for this run only where there is no place for them."""
+"""Compiled kernels: kept on disk from run to run where there is a place for them."""
 
 from collections.abc import Callable
 from typing import Any, TypeVar
