@@ -327,9 +327,7 @@ def view(
 
 def main() -> NoReturn:
     """Entry point: no traceback for what a person typed or a system refused, one line instead."""
-    for stream in (sys.stdout, sys.stderr):  # a file's name need not be text in this shell's encoding
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
+    _settle_streams()
     keep_to_own_settings()
     raise_when_asked_to_end()
     try:
@@ -345,6 +343,15 @@ def main() -> NoReturn:
     sys.exit(status)
 
 
+def _settle_streams() -> None:
+    """Open standard streams that the shell has closed, and let them print whatever a file is called."""
+    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115 - open until the end
+    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
 def _told(error: BaseException) -> tuple[str, int] | None:
     """One line for people and the exit status; None for a mistake of ours, which is a traceback."""
     match error:
@@ -354,8 +361,6 @@ def _told(error: BaseException) -> tuple[str, int] | None:
             return f"{error.format_message()}; see onehop --help", 2
         case Stopped():
             return f"ended by {signal.Signals(error.number).name}", 128 + error.number
-        case typer.Abort() | KeyboardInterrupt():
-            return "interrupted", 128 + signal.SIGINT
         case BrokenPipeError():  # who reads our output has had enough
             return "", 1
         case OSError():

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from onehop.contracts import topics
-from onehop.contracts.errors import MissionError
+from onehop.contracts.errors import InputError, MissionError
 from onehop.contracts.messages import Progress
 from onehop.mission.operator import LOST_WORD, STOPPED, Ending, OperatorSession, aborted, ending_by_death
 from onehop.mission.processes import ProcessGroup, free_endpoint
@@ -60,7 +60,11 @@ def run(
     """
     with StopRequest() as stop:
         summary = _Launch(plan, stop, show, tell).summary()
-        write_summary(plan.out, summary)
+        try:
+            write_summary(plan.out, summary)
+        except InputError:
+            tell(f"{summary['outcome']}: {summary['reason']}")
+            raise
         stop.obey()
     return summary
 

@@ -1,6 +1,6 @@
 """What asks a program to end: Ctrl-C, SIGTERM, and SIGHUP when its terminal closes.
 
-Outside of a mission they are an exception like Ctrl-C. During one they are noted, so that nothing is
+Outside of a mission they are an exception. During one they are noted, so that nothing is
 torn that has to be finished; whoever runs the mission looks and ends it in order.
 """
 
@@ -12,8 +12,8 @@ from typing import Any, NoReturn, Self
 ENDS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 
 
-class Stopped(KeyboardInterrupt):
-    """This program was asked to end. number: of the signal."""
+class Stopped(BaseException):
+    """This program was asked to end; no mistake, and not to be caught as one. number: of the signal."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)

@@ -33,6 +33,8 @@ def claimed(folder: Path) -> Iterator[int]:
     the folder cannot be made or written, or another mission holds it.
     """
     with explained(folder, REMEDY):
+        if folder.exists() and not folder.is_dir():
+            raise OSError(errno.ENOTDIR, "Not a folder")
         folder.mkdir(parents=True, exist_ok=True)
         descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
