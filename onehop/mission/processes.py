@@ -151,8 +151,10 @@ class ProcessGroup:
 
     def is_stopped(self, name: str) -> bool:
         """Whether a child has been stopped (SIGSTOP, SIGTSTP) and not been continued."""
-        pid = self._children[name].process.pid
-        return os.waitid(os.P_PID, pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT) is not None
+        process = self._children[name].process
+        if process.poll() is not None:
+            return False
+        return os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT) is not None
 
     def deaths(self) -> list[Death]:
         """Children that have died since the last call, other than because the world was gone."""
