@@ -305,6 +305,29 @@ def test_a_notebooks_environment_does_no_harm(tmp_path: Path, backend: str) -> N
     assert onehop("doctor", **environment).returncode == 0
 
 
+PANIC = """
+import sys
+from onehop import cli
+cli.keep_to_own_settings = lambda: None
+sys.argv = ["onehop", "doctor"]
+cli.main()
+"""
+
+
+def test_a_panic_of_a_library_is_one_line_and_status_2() -> None:
+    """Zenoh panics over a variable that the command keeps from it; Rust has said so before."""
+    answer = subprocess.run(
+        [sys.executable, "-c", PANIC],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "ZENOH_RUNTIME": "garbage"},
+    )
+    assert answer.returncode == 2
+    assert answer.stderr.splitlines()[-1].startswith("onehop: a library failed: ")
+    assert "Traceback" not in answer.stderr
+
+
 BARE = ("plan", "field.toml", "--start", "8,8", "--goal")
 
 
