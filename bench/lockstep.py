@@ -18,6 +18,7 @@ from onehop.mission import launcher
 from onehop.mission.processes import free_endpoint
 from onehop.node.bus import Bus, make_credentials, open_client, open_router
 from onehop.scenario import scenario_file
+from onehop.wire.output_folder import claimed
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "map1.toml"
 TICKS = 2000
@@ -79,8 +80,9 @@ def mission(robots: int, limit: float, folder: Path) -> float:
     settings = [f"team.size={robots}", f"clock.limit_s={limit}"]
     bundle = scenario_file.load(SCENARIO, settings)
     arguments = launcher.world_arguments(SCENARIO, settings, None, None, None, None)
-    plan = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, True)
-    return float(launcher.run(plan, lambda _: None)["ticks_per_s"])
+    with claimed(folder) as claim:
+        plan = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, claim, True)
+        return float(launcher.run(plan, lambda _: None)["ticks_per_s"])
 
 
 def main() -> None:

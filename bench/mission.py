@@ -22,6 +22,7 @@ from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.journal import Journal
 from onehop.wire.log_writer import LogWriter
+from onehop.wire.output_folder import claimed
 
 SCENARIO = Path(__file__).parents[1] / "scenarios" / "map1.toml"
 ROUNDS = 3
@@ -43,8 +44,9 @@ def one_process(bundle: Bundle, folder: Path, record: bool) -> float:
 def processes(scenario: Path, settings: list[str], bundle: Bundle, folder: Path, record: bool) -> float:
     """Ticks a second of the lock-step driver, from the first tick to the last."""
     arguments = launcher.world_arguments(scenario, settings, None, None, None, None)
-    plan = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, record)
-    return float(launcher.run(plan, lambda _: None)["ticks_per_s"])
+    with claimed(folder) as claim:
+        plan = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, claim, record)
+        return float(launcher.run(plan, lambda _: None)["ticks_per_s"])
 
 
 def ir_sim(bundle: Bundle, folder: Path) -> float | None:

@@ -1,8 +1,12 @@
-"""The command `onehop`. Exit status: 0 did it, 1 ran and the answer is no, 2 could not run, 130 Ctrl-C.
+"""The command `onehop`. Exit status: 0 did it, 1 ran and the answer is no, 2 could not run; after an
+orderly end by a signal 128 and its number: 130 Ctrl-C, 143 SIGTERM, 129 SIGHUP.
 
 Each command's module is imported when it is called, so that `onehop --help` answers at once.
 """
 
+import io
+import os
+import signal
 import sys
 from enum import StrEnum
 from pathlib import Path
@@ -11,7 +15,12 @@ from typing import Annotated, NoReturn
 import typer
 from typer import Argument, Option
 
+from onehop.commands import numbers
+from onehop.commands.numbers import within
 from onehop.contracts.errors import OnehopError
+from onehop.contracts.plain_text import plain
+from onehop.mission.stops import Stopped, raise_when_asked_to_end
+from onehop.node.own_settings import keep_to_own_settings
 
 app = typer.Typer(
     name="onehop",
@@ -68,7 +77,9 @@ def _help(context: typer.Context) -> None:
 def run(
     scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
     driver: Annotated[Driver, Option(help="One process each, or all in one.")] = Driver.PROCESSES,
-    seed: Annotated[int | None, Option(help="Seed of everything random.")] = None,
+    seed: Annotated[
+        int | None, Option(help="Seed of everything random.", callback=within(numbers.SEED))
+    ] = None,
     map_file: Annotated[
         Path | None, Option("--map", help="Another map: .toml, ROS .yaml or MovingAI .map.")
     ] = None,
@@ -96,9 +107,15 @@ def run(
 @app.command()
 def replay(
     log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
-    robot: Annotated[int | None, Option(help="Only this robot.")] = None,
-    first_s: Annotated[float | None, Option("--from", help="Compare from this time on [s].")] = None,
-    last_s: Annotated[float | None, Option("--to", help="Stop at this time [s].")] = None,
+    robot: Annotated[int | None, Option(help="Only this robot.", callback=within(numbers.ROBOT))] = None,
+    first_s: Annotated[
+        float | None,
+        Option("--from", help="Compare from this time on [s].", callback=within(numbers.MISSION_TIME)),
+    ] = None,
+    last_s: Annotated[
+        float | None,
+        Option("--to", help="Stop at this time [s].", callback=within(numbers.MISSION_TIME)),
+    ] = None,
     settings: Settings = [],  # noqa: B006
     as_json: AsJson = False,
 ) -> None:
@@ -117,7 +134,9 @@ def replay(
 def elect(
     ids: Annotated[str, Argument(help="Robot ids, e.g. 1,2,4,5.")],
     narrow: Annotated[bool, Option("--narrow", help="In a narrow passage.")] = False,
-    spacing: Annotated[float, Option(help="Distance between neighbours [m].")] = 4.0,
+    spacing: Annotated[
+        float, Option(help="Distance between neighbours [m].", callback=within(numbers.SPACING))
+    ] = 4.0,
     as_json: AsJson = False,
 ) -> None:
     """Leader, shape and slots of a team.
@@ -136,9 +155,12 @@ def link(
     ] = "1,5,8,10,12,15,20,25,30,40",
     preset: Annotated[Preset, Option(help="Propagation.")] = Preset.THESIS,
     rate: Annotated[float, Option(help="1, 2, 5.5 or 11 Mb/s.")] = 1.0,
-    msdu: Annotated[int, Option(help="Payload of a frame [B].")] = 800,
-    seed: Annotated[int, Option(help="Seed of fading and backoff.")] = 1,
-    seconds: Annotated[float, Option(help="Simulated time measured at each distance.")] = 20.0,
+    msdu: Annotated[int, Option(help="Payload of a frame [B].", callback=within(numbers.MSDU))] = 800,
+    seed: Annotated[int, Option(help="Seed of fading and backoff.", callback=within(numbers.SEED))] = 1,
+    seconds: Annotated[
+        float,
+        Option(help="Simulated time measured at each distance.", callback=within(numbers.MEASURED)),
+    ] = 20.0,
     as_json: AsJson = False,
 ) -> None:
     """Link budget over distance: SNR, error rates, throughput.
@@ -152,12 +174,14 @@ def link(
 
 @app.command()
 def saturate(
-    stations: Annotated[int, Option(help="Stations that always have a message.")] = 6,
+    stations: Annotated[
+        int, Option(help="Stations that always have a message.", callback=within(numbers.STATIONS))
+    ] = 6,
     rts: Annotated[bool, Option("--rts/--basic", help="With or without RTS/CTS.")] = True,
     rate: Annotated[float, Option(help="1, 2, 5.5 or 11 Mb/s.")] = 1.0,
-    msdu: Annotated[int, Option(help="Payload of a frame [B].")] = 800,
-    seed: Annotated[int, Option(help="Seed of the backoff.")] = 1,
-    seconds: Annotated[float, Option(help="Simulated time.")] = 20.0,
+    msdu: Annotated[int, Option(help="Payload of a frame [B].", callback=within(numbers.MSDU))] = 800,
+    seed: Annotated[int, Option(help="Seed of the backoff.", callback=within(numbers.SEED))] = 1,
+    seconds: Annotated[float, Option(help="Simulated time.", callback=within(numbers.MEASURED))] = 20.0,
     as_json: AsJson = False,
 ) -> None:
     """Throughput of saturated stations in one cell, beside Bianchi's formula.
@@ -175,10 +199,16 @@ def plan(
     start: Annotated[str | None, Option(metavar="X,Y", help="Where it starts [m].")] = None,
     goal: Annotated[str | None, Option(metavar="X,Y", help="Where it goes [m].")] = None,
     planner: Annotated[Planner | None, Option(help="How it finds its way.")] = None,
-    seed: Annotated[int | None, Option(help="Seed of its samples.")] = None,
-    cell: Annotated[float | None, Option(help="Metres a cell of a MovingAI grid.")] = None,
+    seed: Annotated[
+        int | None, Option(help="Seed of its samples.", callback=within(numbers.SEED))
+    ] = None,
+    cell: Annotated[
+        float | None, Option(help="Metres a cell of a MovingAI grid.", callback=within(numbers.CELL))
+    ] = None,
     settings: Settings = [],  # noqa: B006
-    figure: Annotated[Path | None, Option(help="Draw map, samples, road maps and path (.png).")] = None,
+    figure: Annotated[
+        Path | None, Option(help="Draw map, samples, road maps and path (.png, .svg or .pdf).")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """One leader alone finds its way in a map that it does not know.
@@ -223,10 +253,18 @@ def report(
 @app.command()
 def explain(
     log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
-    robot: Annotated[int, Option(help="Which robot.")],
-    at_s: Annotated[float, Option("--at", help="At which simulated time [s].")],
+    robot: Annotated[int, Option(help="Which robot.", callback=within(numbers.ROBOT))],
+    at_s: Annotated[
+        float,
+        Option("--at", help="At which simulated time [s].", callback=within(numbers.MISSION_TIME)),
+    ],
     window_s: Annotated[
-        float, Option("--window", help="Tell messages of this long before it [s].")
+        float,
+        Option(
+            "--window",
+            help="Tell messages of this long before it [s].",
+            callback=within(numbers.MISSION_TIME),
+        ),
     ] = 6.0,
     as_json: AsJson = False,
 ) -> None:
@@ -288,21 +326,46 @@ def view(
 
 
 def main() -> NoReturn:
-    """Entry point: no traceback for what a person typed, one line instead."""
-    command = typer.main.get_command(app)
+    """Entry point: no traceback for what a person typed or a system refused, one line instead."""
+    _settle_streams()
+    keep_to_own_settings()
+    raise_when_asked_to_end()
     try:
-        status = command.main(standalone_mode=False)
-    except OnehopError as error:
-        print(f"onehop: {error}", file=sys.stderr)
-        status = 2
-    except typer.Abort:
-        status = 130
-    except KeyboardInterrupt:
-        print("onehop: interrupted", file=sys.stderr)
-        status = 130
-    except BrokenPipeError:
-        status = 1
-    except typer.TyperException as error:
-        print(f"onehop: {error.format_message()}; see onehop --help", file=sys.stderr)
-        status = 2
+        status = typer.main.get_command(app).main(standalone_mode=False)
+        sys.stdout.flush()
+    except BaseException as error:
+        told = _told(error)
+        if told is None:
+            raise
+        line, status = told
+        if line:
+            print(f"onehop: {plain(line)}", file=sys.stderr)
     sys.exit(status)
+
+
+def _settle_streams() -> None:
+    """Open standard streams that the shell has closed, and let them print whatever a file is called."""
+    sys.stdout = sys.stdout or open(os.devnull, "w")  # noqa: SIM115 - open until the end
+    sys.stderr = sys.stderr or open(os.devnull, "w")  # noqa: SIM115
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+def _told(error: BaseException) -> tuple[str, int] | None:
+    """One line for people and the exit status; None for a mistake of ours, which is a traceback."""
+    match error:
+        case OnehopError():
+            return str(error), 2
+        case typer.TyperException():
+            return f"{error.format_message()}; see onehop --help", 2
+        case Stopped():
+            return f"ended by {signal.Signals(error.number).name}", 128 + error.number
+        case BrokenPipeError():  # who reads our output has had enough
+            return "", 1
+        case OSError():
+            where = f"{os.fsdecode(error.filename)}: " if error.filename is not None else ""
+            return f"{where}{error.strerror or error}", 2
+    if type(error).__module__ == "pyo3_runtime":
+        return f"a library failed: {error}", 2
+    return None

@@ -2,17 +2,21 @@
 
 The world hands it a few ticks at a time. It writes them in canonical order, flushes them to the
 operating system and tells the world how far the file is; the world never runs more than a few ticks
-ahead. With --no-file it only makes the digest. With --summary it writes the mission's summary, which is
-otherwise the launcher's business.
+ahead. With --no-file it only makes the digest. Last it writes the mission's summary. When it cannot
+write any more it tells the world why, and leaves the log as far as it is.
 """
 
 import argparse
+import contextlib
+import errno
 import time
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 from onehop.contracts import topics
 from onehop.contracts.briefings import LogBriefing
+from onehop.contracts.errors import InputError
 from onehop.contracts.messages import End
 from onehop.node import startup
 from onehop.node.bus import GONE, Bus
@@ -21,6 +25,7 @@ from onehop.wire.batch import unpack_ticks
 from onehop.wire.codec import decode
 from onehop.wire.journal import Journal, WireMessage
 from onehop.wire.log_writer import LogWriter
+from onehop.wire.output_folder import LOG, REMEDY, claimed, explained
 from onehop.wire.summary import summarize, write_summary
 
 LAST_TICKS_S = 2.0
@@ -32,27 +37,34 @@ def main() -> int:
     startup.add_connect(parser)
     parser.add_argument("--out", type=Path, required=True, help="folder for mission.mcap")
     parser.add_argument("--no-file", action="store_true", help="make the digest, write no log")
-    parser.add_argument(
-        "--summary", action="store_true", help="write summary.json as well: no launcher does"
-    )
     options = parser.parse_args()
     startup.start(options)
+    held_by_launcher = options.lifeline is not None
+    with contextlib.nullcontext() if held_by_launcher else claimed(options.out):
+        return _record(options)
+
+
+def _record(options: argparse.Namespace) -> int:
     with startup.connect(options, topics.RECORDER) as bus:
         bus.watch(topics.WORLD)
         briefing = decode(LogBriefing, startup.briefing(bus, topics.RECORDER))
-        options.out.mkdir(parents=True, exist_ok=True)
-        return _Recorder(bus, briefing, options).serve()
+        try:
+            return _Recorder(bus, briefing, options).serve()
+        except InputError as error:
+            bus.publisher(topics.by(topics.RECORDER, topics.FAILED))(str(error).encode())
+            raise
 
 
 class _Recorder:
     def __init__(self, bus: Bus, briefing: LogBriefing, options: argparse.Namespace) -> None:
         self._bus = bus
-        self._summary_folder: Path | None = options.out if options.summary else None
-        self._path = None if options.no_file else options.out / "mission.mcap"
+        self._folder: Path = options.out
+        self._path = None if options.no_file else options.out / LOG
         self._log: LogWriter | None = None
         if self._path is not None:
             bundle = bundle_from_json(briefing.scenario_json, dict(briefing.files), "briefing")
-            self._log = LogWriter(self._path, bundle, briefing.driver)
+            with explained(self._path, REMEDY):
+                self._log = LogWriter(self._path, bundle, briefing.driver)
         self._journal = Journal(self._write)
         self._acknowledge = bus.publisher(topics.by(topics.RECORDER, topics.RECORDED))
         self._put_digest = bus.publisher(topics.to(topics.OPERATOR, topics.DIGEST))
@@ -82,25 +94,37 @@ class _Recorder:
         if what == topics.END:
             self._end = decode(End, data)
         elif what == topics.TICKS:
-            for tick, messages in unpack_ticks(data):
-                self._journal.add(tick, messages)
-            if self._log is not None:
-                self._log.flush()
+            with self._writing():
+                for tick, messages in unpack_ticks(data):
+                    self._journal.add(tick, messages)
+                if self._log is not None:
+                    self._log.flush()
             self._acknowledge(self._journal.last_tick.to_bytes(8, "little"))
 
+    @contextlib.contextmanager
+    def _writing(self) -> Iterator[None]:
+        """Say which file it was that could not be written, or that nobody can find any more."""
+        with explained(self._path or self._folder, REMEDY):
+            if self._log is not None and self._log.is_deleted:
+                raise OSError(errno.ENOENT, "deleted while it was written")
+            yield
+
     def _finish(self) -> int:
-        summary: dict[str, Any] | None = None
-        if self._end is not None:
-            log = None if self._path is None else str(self._path)
-            summary = summarize(self._end.outcome, self._end.wall_s, self._journal.digest(), log)
+        if self._end is None:
+            with self._writing():
+                self._close(None)
+            return startup.WORLD_IS_GONE
+        log = None if self._path is None else str(self._path)
+        summary = summarize(self._end.outcome, self._end.wall_s, self._journal.digest(), log)
+        with self._writing():
+            self._close(summary)
+        self._put_digest(self._journal.digest().encode())
+        write_summary(self._folder, summary)
+        return 0
+
+    def _close(self, summary: dict[str, Any] | None) -> None:
         if self._log is not None:
             self._log.close(summary)
-        if summary is None:
-            return startup.WORLD_IS_GONE
-        if self._summary_folder is not None:
-            write_summary(self._summary_folder, summary)
-        self._put_digest(self._journal.digest().encode())
-        return 0
 
 
 if __name__ == "__main__":

@@ -84,6 +84,9 @@ POWERS_AND_PRODUCTS = _words("pow ipow matmul imatmul")
 
 INEXACT_MODULES = ("cmath", "scipy")
 
+COMPILERS = ("numba.", "onehop.contracts.kernels.kernel")
+"""What makes a compiled function of another: beginnings of full names."""
+
 
 @dataclass(frozen=True)
 class Finding:
@@ -121,7 +124,7 @@ def _imported(tree: ast.Module) -> dict[str, str]:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
             meant = node.value.func if isinstance(node.value, ast.Call) else node.value
             full = _full_name(meant, names)
-            if full and (meant is node.value or full.startswith("numba.")):
+            if full and (meant is node.value or full.startswith(COMPILERS)):
                 names[node.targets[0].id] = full
     return names
 
@@ -200,7 +203,7 @@ class _Finder(ast.NodeVisitor):
         self._function = node.name
         for decorator in node.decorator_list:
             named = decorator.func if isinstance(decorator, ast.Call) else decorator
-            if (_full_name(named, self._names) or "").startswith("numba."):
+            if (_full_name(named, self._names) or "").startswith(COMPILERS):
                 self._compiled = True
         self.generic_visit(node)
         self._function, self._compiled = outer
@@ -235,7 +238,7 @@ class _Finder(ast.NodeVisitor):
 
     def _look_at_options(self, node: ast.Call) -> None:
         """A compiler that may reorder, or add up in threads, has no fixed order."""
-        if not (_full_name(node.func, self._names) or "").startswith("numba."):
+        if not (_full_name(node.func, self._names) or "").startswith(COMPILERS):
             return
         for option in node.keywords:
             loose = not (isinstance(option.value, ast.Constant) and option.value.value is False)

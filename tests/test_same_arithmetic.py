@@ -165,6 +165,7 @@ import math
 import numba
 from numba import njit
 from numba import njit as quick
+from onehop.contracts.kernels import kernel
 ready = njit(cache=True)
 """
 LENGTH = """
@@ -175,7 +176,16 @@ def f(x, y):
 
 @pytest.mark.parametrize(
     "decorator",
-    ["@numba.njit", "@numba.njit(cache=True)", "@njit", "@quick", "@ready", "@numba.vectorize"],
+    [
+        "@numba.njit",
+        "@numba.njit(cache=True)",
+        "@njit",
+        "@quick",
+        "@ready",
+        "@numba.vectorize",
+        "@kernel()",
+        '@kernel(error_model="numpy")',
+    ],
 )
 def test_a_compiled_function_is_held_to_more_and_anywhere(decorator: str) -> None:
     outside = "def g(x):\n    return math.sin(x) ** 2\n"
@@ -192,8 +202,9 @@ def test_a_compiled_function_is_held_to_more_and_anywhere(decorator: str) -> Non
     [("fastmath=True", 1), ("parallel=True", 1), ("fastmath=False", 0), ("cache=True", 0)],
 )
 def test_a_compiler_that_may_reorder_is_found(option: str, count: int) -> None:
-    text = f"import numba\n@numba.njit({option})\ndef f(x):\n    return x\n"
-    assert len(_found(text, compiled_only=True)) == count
+    for compiler in ("numba.njit", "kernel"):
+        text = f"{COMPILERS}@{compiler}({option})\ndef f(x):\n    return x\n"
+        assert len(_found(text, compiled_only=True)) == count
 
 
 def test_a_finding_names_its_place() -> None:

@@ -80,6 +80,7 @@ def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str
         ProgressReports(bus),
     )
     _heed_stops(bus, mail)
+    mail.read(topics.RECORDER, topics.FAILED, lambda why: mail.break_off(why.decode(errors="replace")))
     bus.watch("*")
     bus.answer(topics.config("*"), Briefings(bundle, walls, driver, roll).answer)
     bus.announce(topics.WORLD)

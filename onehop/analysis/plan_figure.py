@@ -2,6 +2,7 @@
 
 import io
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
@@ -13,11 +14,31 @@ from onehop.maps.walls import WallMap
 
 _DPI = 110
 
+_UNDATED = {"png": {"Software": None}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+"""By format, what leaves out of a file that which differs from one writing to the next."""
+
 
 def plan_figure(
-    trial: Trial, walls: WallMap, goal: tuple[float, float], shortest: FloatArray | None
+    trial: Trial,
+    walls: WallMap,
+    goal: tuple[float, float],
+    shortest: FloatArray | None,
+    file_format: str,
 ) -> bytes:
-    """The figure as PNG. shortest: (n, 2) way on the known map [m], or None to leave it out."""
+    """The figure as a file. shortest: (n, 2) way on the known map [m], or None to leave it out.
+
+    file_format: "png", "svg" or "pdf".
+    """
+    figure = _drawn(trial, walls, goal, shortest)
+    picture = io.BytesIO()
+    with mpl.rc_context({"svg.hashsalt": "onehop"}):
+        figure.savefig(picture, format=file_format, dpi=_DPI, metadata=_UNDATED[file_format])
+    return picture.getvalue()
+
+
+def _drawn(
+    trial: Trial, walls: WallMap, goal: tuple[float, float], shortest: FloatArray | None
+) -> Figure:
     xmin, ymin, xmax, ymax = walls.bounds
     aspect = (ymax - ymin) / (xmax - xmin)
     figure = Figure(figsize=(9.0, min(max(9.0 * aspect, 4.0), 16.0)), layout="constrained")
@@ -41,9 +62,7 @@ def plan_figure(
     axes.set(xlim=(xmin, xmax), ylim=(ymin, ymax), aspect="equal", xlabel="x [m]", ylabel="y [m]")
     axes.set_title(f"{trial.answer}: {trial.length:.1f} m, {len(trial.snapshots)} planning moments")
     axes.legend(loc="upper left", fontsize="small", framealpha=0.9)
-    picture = io.BytesIO()
-    figure.savefig(picture, format="png", dpi=_DPI, metadata={"Software": None})
-    return picture.getvalue()
+    return figure
 
 
 def _road_maps(axes: Axes, trial: Trial) -> None:

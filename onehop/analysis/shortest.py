@@ -8,11 +8,11 @@ right to about one per cent.
 import heapq
 import math
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts.arrays import BoolArray, FloatArray
+from onehop.contracts.kernels import kernel
 from onehop.contracts.sections import Point
 from onehop.maps.walls import WallMap
 
@@ -77,7 +77,7 @@ def _mark(blocked: BoolArray, segment: FloatArray, x: FloatArray, y: FloatArray,
     blocked[low:high, left:right] |= np.hypot(px - share * dx, py - share * dy) < radius
 
 
-@numba.njit(cache=True)
+@kernel()
 def _clear(free: BoolArray, r0: int, c0: int, r1: int, c1: int) -> bool:
     """Whether the straight line between two cells stays on free cells."""
     count = 2 * max(abs(r1 - r0), abs(c1 - c0))
@@ -88,7 +88,7 @@ def _clear(free: BoolArray, r0: int, c0: int, r1: int, c1: int) -> bool:
     return True
 
 
-@numba.njit(cache=True)
+@kernel()
 def _dijkstra(free: BoolArray, row: int, column: int, steps: npt.NDArray[np.int64]) -> FloatArray:
     rows, columns = free.shape
     cost = np.full((rows, columns), np.inf)

@@ -1,15 +1,23 @@
-"""`onehop doctor`: is everything here that a run needs, what is missing, and how to get it."""
+"""`onehop doctor`: is everything here that a run needs, what is missing, and how to get it.
+
+What it vouches for it has tried: it writes a file, compiles a kernel, opens a bus, draws a figure.
+"""
 
 import importlib.metadata
+import io
 import os
 import platform
+import resource
 import shutil
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
+from pathlib import Path
 
 from onehop.commands.output import emit_json
+from onehop.contracts.plain_text import plain
+from onehop.wire.output_folder import require_writable
 
 LIBRARIES = (
     "eclipse-zenoh",
@@ -25,6 +33,12 @@ LIBRARIES = (
 )
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 DOCKER_TIMEOUT_S = 10.0
+
+ROOM_BYTES = 200_000_000
+"""Free space below which a folder is too small for logs: ten missions of ten minutes [B]."""
+
+USUAL_CLIENTS = 9
+"""Processes beside the world in a mission of six robots."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +74,11 @@ def _checks() -> Iterator[Check]:
     yield Check("python", sys.version_info >= (3, 11), True, version, "install Python 3.11 or newer")
     for name in LIBRARIES:
         yield _library(name)
-    yield _bus()
-    yield _folder()
+    yield _tried("bus on loopback", _bus, "allow TCP on 127.0.0.1")
+    yield _tried("compiled kernels", _kernels, "make setup (or: pip install --force-reinstall numba)")
+    yield _tried("figures", _figure, "make setup (or: pip install --force-reinstall matplotlib)")
+    yield _tried("working folder", _folder, "a folder that can be written, with room for logs")
+    yield _tried("open files", _open_files, "ulimit -n 1024")
     cores = os.cpu_count() or 1
     yield Check("cores", cores >= 2, False, str(cores), "works with one; two and more run faster")
     yield _docker()
@@ -75,27 +92,63 @@ def _library(name: str) -> Check:
         return Check(name, False, True, "not installed", "make setup (or: pip install onehop)")
 
 
-def _bus() -> Check:
-    """Open a router on loopback and reach it, as a mission does."""
-    from onehop.contracts.errors import MissionError
-    from onehop.mission.processes import free_endpoint
-    from onehop.node.bus import open_client, open_router
-
+def _tried(name: str, attempt: Callable[[], str], remedy: str) -> Check:
+    """A check by doing: whatever goes wrong is what was found."""
     try:
-        endpoint = free_endpoint()
-        with open_router("doctor", endpoint), open_client("doctor", endpoint, "doctor", None, 3000):
-            return Check("bus on loopback", True, True, endpoint, "")
-    except (MissionError, OSError) as error:
-        return Check("bus on loopback", False, True, str(error), "allow TCP on 127.0.0.1")
+        return Check(name, True, True, attempt(), "")
+    except Exception as error:
+        return Check(name, False, True, plain(f"{error}"), remedy)
 
 
-def _folder() -> Check:
-    free_gb = shutil.disk_usage(".").free / 1e9
-    writable = os.access(".", os.W_OK)
-    found = f"{free_gb:.1f} GB free{'' if writable else ', not writable'}"
-    return Check(
-        "working folder", writable and free_gb > 0.2, True, found, "a folder with room for logs"
-    )
+def _bus() -> str:
+    """Open a router on loopback and reach it, as a mission does."""
+    from onehop.mission.processes import free_endpoint
+    from onehop.node.bus import make_credentials, open_client, open_router
+
+    endpoint, words = free_endpoint(), make_credentials(["doctor"])
+    with (
+        open_router("doctor", endpoint, words),
+        open_client("doctor", endpoint, "doctor", words["doctor"], 3000),
+    ):
+        return endpoint
+
+
+def _kernels() -> str:
+    """Compile a kernel, or load it from where it was kept."""
+    from world_server.core.turning import direction
+
+    if direction(0.0) != (1.0, 0.0):
+        raise ArithmeticError("a kernel gives a wrong result")
+    kept_in = direction.stats.cache_path  # type: ignore[attr-defined]
+    return f"kept in {kept_in}" if kept_in else "compiled anew by every run: no folder to keep them"
+
+
+def _figure() -> str:
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    FigureCanvasAgg(figure)
+    figure.add_subplot().set_title("onehop")
+    drawing = io.BytesIO()
+    figure.savefig(drawing, format="png")
+    return f"drawn, {drawing.tell()} B"
+
+
+def _folder() -> str:
+    runs = Path("runs")
+    require_writable((runs if runs.is_dir() else Path()) / "trial")
+    free = shutil.disk_usage(".").free
+    if free < ROOM_BYTES:
+        raise OSError(f"{free / 1e9:.1f} GB free")
+    return f"{free / 1e9:.1f} GB free"
+
+
+def _open_files() -> str:
+    from onehop.mission.processes import require_descriptors
+
+    require_descriptors(USUAL_CLIENTS)
+    return f"up to {resource.getrlimit(resource.RLIMIT_NOFILE)[1]} allowed"
 
 
 def _docker() -> Check:

@@ -1,15 +1,15 @@
 """`onehop elect`: leader, shape and slots of a team, as every robot computes them."""
 
+from onehop.commands.numbers import ROBOT, require_within
 from onehop.commands.output import emit_json, stdout, table
 from onehop.contracts.errors import InputError
+from onehop.contracts.sections import MOST_ROBOTS
 from robot_agent.core.team.formation import formation
 
 
 def elect(ids: str, narrow: bool, spacing: float, as_json: bool) -> int:
     """Print the formation of a team; returns the exit status."""
     team = _parse(ids)
-    if not spacing > 0:
-        raise InputError(f"--spacing {spacing}", "is not positive", "metres between neighbours, e.g. 4")
     made = formation(team, narrow, spacing)
     slots = [
         {"robot": slot.robot, "x": round(slot.x, 6) + 0.0, "y": round(slot.y, 6) + 0.0}
@@ -32,8 +32,10 @@ def _parse(ids: str) -> tuple[int, ...]:
         team = tuple(sorted(int(part) for part in ids.split(",")))
     except ValueError:
         raise InputError(f"IDS {ids!r}", "is not a list of robot ids", "e.g. 1,2,4,5") from None
-    if team[0] < 1:
-        raise InputError(f"IDS {ids!r}", f"id {team[0]}", "ids are 1 or more")
+    for robot in team:
+        require_within(ROBOT, "IDS", robot)
+    if len(team) > MOST_ROBOTS:
+        raise InputError("IDS", f"{len(team)} robots", f"a team of at most {MOST_ROBOTS}")
     if len(set(team)) < len(team):
         raise InputError(f"IDS {ids!r}", "an id stands twice", "name every robot once")
     return team

@@ -2,16 +2,13 @@
 
 from dataclasses import asdict, replace
 
+from onehop.commands.numbers import DISTANCE, require_within
 from onehop.commands.output import emit_json, stdout, table
 from onehop.contracts.errors import InputError
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.link_tables import link_table, saturation_table
 
 RATES = (1.0, 2.0, 5.5, 11.0)
-MOST_BYTES = 2304
-"""Largest MSDU of 802.11 [B]."""
-
-MOST_STATIONS = 200
 
 
 def link(
@@ -19,10 +16,9 @@ def link(
 ) -> int:
     """Print the link budget over distance."""
     _require_rate(rate)
-    _require_size(msdu)
     physical = preset == "physical"
     section = replace(RadioSection(), preset="physical" if physical else "thesis", rate_mbps=rate)
-    made = link_table(section, _distances(distances), msdu, seed, _positive_seconds(seconds))
+    made = link_table(section, _distances(distances), msdu, seed, seconds)
     if as_json:
         emit_json(asdict(made))
         return 0
@@ -55,11 +51,8 @@ def saturate(
 ) -> int:
     """Print the throughput of saturated stations in one cell, measured and by Bianchi's formula."""
     _require_rate(rate)
-    _require_size(msdu)
-    if not 1 <= stations <= MOST_STATIONS:
-        raise InputError(f"--stations {stations}", "out of range", f"1 to {MOST_STATIONS}")
     section = replace(RadioSection(), rate_mbps=rate)
-    made = saturation_table(section, stations, msdu, rts, seed, _positive_seconds(seconds))
+    made = saturation_table(section, stations, msdu, rts, seed, seconds)
     if as_json:
         emit_json(asdict(made))
         return 0
@@ -78,17 +71,6 @@ def _require_rate(rate: float) -> None:
         raise InputError(f"--rate {rate:g}", "is no rate of 802.11b", "1, 2, 5.5 or 11")
 
 
-def _require_size(msdu: int) -> None:
-    if not 1 <= msdu <= MOST_BYTES:
-        raise InputError(f"--msdu {msdu}", "out of range", f"1 to {MOST_BYTES} bytes")
-
-
-def _positive_seconds(seconds: float) -> float:
-    if not seconds > 0:
-        raise InputError(f"--seconds {seconds:g}", "is not positive", "simulated time, e.g. 20")
-    return seconds
-
-
 def _distances(text: str) -> tuple[float, ...]:
     try:
         distances = tuple(float(part) for part in text.split(","))
@@ -96,6 +78,6 @@ def _distances(text: str) -> tuple[float, ...]:
         raise InputError(
             f"--distance {text!r}", "is no list of distances", "metres, e.g. 5,10,20"
         ) from None
-    if not all(0 < distance < float("inf") for distance in distances):
-        raise InputError(f"--distance {text!r}", "a distance is not positive", "metres, e.g. 5,10,20")
+    for distance in distances:
+        require_within(DISTANCE, "--distance", distance)
     return distances

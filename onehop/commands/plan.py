@@ -6,10 +6,15 @@ from typing import Any
 from onehop.analysis.shortest import KnownMap, way_length
 from onehop.commands.output import emit_json
 from onehop.contracts.arrays import FloatArray
+from onehop.contracts.errors import InputError
 from onehop.drivers.trial import Trial, run_trial
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
 from onehop.scenario import scenario_file
+from onehop.wire.output_folder import explained, require_writable
+
+PICTURES = (".png", ".svg", ".pdf")
+"""Endings of a figure's name; each says how it is written."""
 
 RASTER_CELLS = 400
 """Cells along the longer side of the map in which the shortest way is searched."""
@@ -27,6 +32,8 @@ def plan(
     as_json: bool,
 ) -> int:
     """Find the way once; exit status 1 when the goal was not reached."""
+    if figure is not None:
+        _require_picture(figure)
     bundle = scenario_file.load_map_mission(
         map_file,
         scenario_file.point(start, "--start"),
@@ -48,7 +55,8 @@ def plan(
     if figure is not None:
         from onehop.analysis.plan_figure import plan_figure
 
-        figure.write_bytes(plan_figure(run, walls, target, shortest))
+        with explained(figure, "a folder with room for it"):
+            figure.write_bytes(plan_figure(run, walls, target, shortest, figure.suffix.lower()[1:]))
     if as_json:
         emit_json(summary)
     else:
@@ -66,6 +74,13 @@ def _changes(settings: list[str], planner: str | None, cell: float | None) -> li
     return changes
 
 
+def _require_picture(figure: Path) -> None:
+    """Raise InputError, before the plan is driven, for a figure that could not be written."""
+    if figure.suffix.lower() not in PICTURES:
+        raise InputError(f"--figure {figure}", "its ending says no format", " or ".join(PICTURES))
+    require_writable(figure)
+
+
 def _shortest(
     walls: WallMap, inflation: float, start: tuple[float, float], goal: tuple[float, float]
 ) -> FloatArray | None:
@@ -79,8 +94,9 @@ def _print(summary: dict[str, Any], run: Trial, figure: Path | None) -> None:
     print(f"answer         {run.answer}")
     print(f"path           {summary['path_length_m']:.1f} m in {summary['steps']} ticks")
     shortest = summary["shortest_m"]
-    if shortest:
-        ratio = f": {summary['path_length_m'] / shortest:.2f} times as far" if summary["reached"] else ""
+    if shortest is not None:
+        times = shortest > 0 and summary["reached"]
+        ratio = f": {summary['path_length_m'] / shortest:.2f} times as far" if times else ""
         print(f"shortest       {shortest:.1f} m on the known map{ratio}")
     else:
         print("shortest       none: the known map has no way for the inflated robot")

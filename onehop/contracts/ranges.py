@@ -49,7 +49,7 @@ def _wrong(value: Any, kind: Any, key: str) -> Iterator[Problem]:
     if origin is Annotated:
         limits = next(mark for mark in inner[1:] if isinstance(mark, Range))
         if not limits.least <= value <= limits.most:
-            yield Problem(key, f"{_short(value)} is out of range", f"a number from {limits}")
+            yield Problem(key, f"{shown(value)} is out of range", f"a number from {limits}")
     elif origin is tuple:
         each = inner[:1] * len(value) if inner[-1] is Ellipsis else inner
         for place, (one, one_kind) in enumerate(zip(value, each, strict=True)):
@@ -63,7 +63,7 @@ def _wrong(value: Any, kind: Any, key: str) -> Iterator[Problem]:
         raise TypeError(f"{key} is declared without a range")
 
 
-def _short(value: float) -> str:
+def shown(value: float) -> str:
     """A number for people; one of thousands of digits by its beginning and its length."""
     if isinstance(value, int) and value.bit_length() > 3 * LONGEST_NUMBER:
         return f"a number of {value.bit_length()} bits"

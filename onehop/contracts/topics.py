@@ -46,6 +46,9 @@ TICKS = "ticks"
 RECORDED = "recorded"
 """Recorder to world: the last tick that is in the file."""
 
+FAILED = "failed"
+"""Recorder to world: it cannot write any more, and why."""
+
 END = "end"
 """World to all: the mission is over, and how."""
 

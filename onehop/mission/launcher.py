@@ -1,5 +1,7 @@
 """Run one mission as processes: start them, watch over them, end them, write the summary."""
 
+import contextlib
+import math
 import time
 import uuid
 from collections.abc import Callable, Sequence
@@ -8,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from onehop.contracts import topics
-from onehop.contracts.errors import MissionError
-from onehop.contracts.messages import Death, Progress
-from onehop.mission.operator import Ending, OperatorSession, ending_by_death
+from onehop.contracts.errors import InputError, MissionError
+from onehop.contracts.messages import Progress
+from onehop.mission.operator import LOST_WORD, STOPPED, Ending, OperatorSession, aborted, ending_by_death
 from onehop.mission.processes import ProcessGroup, free_endpoint
-from onehop.node.bus import Bus, open_client
-from onehop.wire.summary import summarize, write_summary
+from onehop.mission.stops import StopRequest
+from onehop.node.bus import LEASE_MS, Bus, open_client
+from onehop.wire.output_folder import LOG
+from onehop.wire.summary import read_summary, summarize, write_summary
 
 START_ATTEMPTS = 5
 """Tries when another program takes the free port between the search for it and its use."""
@@ -24,23 +28,25 @@ CONNECT_TRY_MS = 500
 CONNECT_S = 60.0
 """How long the world may take to open the bus [s]."""
 
+STOPPED_S = LEASE_MS / 1000.0
+"""How long the world may be stopped before its bus is there [s]: as long as afterwards."""
+
 LEAVE_S = 2.0
 """How long the children may take to leave by themselves after a mission that was not broken off [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class LaunchPlan:
-    """What to run. world_arguments: scenario and options, as `python -m world_server` takes them."""
+    """What to run. world_arguments: scenario and options, as `python -m world_server` takes them.
+
+    out: the folder of its output, held by the descriptor `claim` (output_folder.claimed).
+    """
 
     world_arguments: tuple[str, ...]
     robots: tuple[int, ...]
     out: Path
+    claim: int
     record: bool
-
-    @property
-    def log(self) -> str | None:
-        """Where the log will be, if there will be one."""
-        return str(self.out / "mission.mcap") if self.record else None
 
 
 def run(
@@ -49,63 +55,106 @@ def run(
     """Run a mission to its end, write its summary and return it.
 
     show: takes progress, some times a second. tell: takes lines for people, when something went wrong.
-    Raises MissionError when it cannot be run, KeyboardInterrupt after an orderly end on Ctrl-C.
+    Raises MissionError or InputError when it cannot be run, Stopped after an orderly end on Ctrl-C,
+    SIGTERM or SIGHUP.
     """
-    for _ in range(START_ATTEMPTS):
-        mission = f"onehop-{uuid.uuid4().hex[:8]}"
-        endpoint = free_endpoint()
-        with ProcessGroup(endpoint, mission, plan.robots, plan.out / "stderr") as group:
-            ending = _run_once(plan, group, mission, endpoint, show, tell)
-            if ending is None:
-                continue
-            summary = summarize(ending.outcome, ending.wall_s, ending.digest, plan.log, group.processes)
-            write_summary(plan.out, summary)
-            if ending.interrupted:
-                raise KeyboardInterrupt
-            return summary
-    raise MissionError(f"no free port on loopback found in {START_ATTEMPTS} attempts")
-
-
-def _run_once(
-    plan: LaunchPlan,
-    group: ProcessGroup,
-    mission: str,
-    endpoint: str,
-    show: Callable[[Progress], None],
-    tell: Callable[[str], None],
-) -> Ending | None:
-    """One attempt; None when the port was taken in between."""
-    group.start_world(plan.world_arguments)
-    group.start_radio()
-    group.start_recorder(plan.out, plan.record)
-    for i in plan.robots:
-        group.start_robot(i)
-    bus = _connect(group, mission, endpoint)
-    if isinstance(bus, Death):
-        if "Address already in use" in bus.account:
-            return None
-        return ending_by_death(group, bus.name, 0)
-    with bus:
-        ending = OperatorSession(group, bus, show, tell).until_end()
-        group.end(0.0 if ending.outcome.outcome == "aborted" else LEAVE_S)  # while the router can answer
-    if group.said_something:
-        tell(f"what the processes said on stderr is in {plan.out / 'stderr'}")
-    return ending
-
-
-def _connect(group: ProcessGroup, mission: str, endpoint: str) -> Bus | Death:
-    """The operator's session as soon as the world listens, or the death of a child before that."""
-    deadline = time.monotonic() + CONNECT_S
-    while time.monotonic() < deadline:
+    with StopRequest() as stop:
+        summary = _Launch(plan, stop, show, tell).summary()
         try:
-            return open_client(
-                mission, endpoint, topics.OPERATOR, group.operator_password, CONNECT_TRY_MS
-            )
-        except MissionError:
-            deaths = group.deaths()
-            if deaths:
-                return deaths[0]
-    raise MissionError(f"the world process has not opened the bus within {CONNECT_S:g} s")
+            write_summary(plan.out, summary)
+        except InputError:
+            tell(f"{summary['outcome']}: {summary['reason']}")
+            raise
+        stop.obey()
+    return summary
+
+
+class _Launch:
+    """One mission as processes, tried until it has a port of its own."""
+
+    def __init__(
+        self,
+        plan: LaunchPlan,
+        stop: StopRequest,
+        show: Callable[[Progress], None],
+        tell: Callable[[str], None],
+    ) -> None:
+        self._plan = plan
+        self._stop = stop
+        self._show = show
+        self._tell = tell
+        self._log = plan.out / LOG
+        self._log_before = _written_ns(self._log)
+
+    def summary(self) -> dict[str, Any]:
+        """Run it; its summary, complete."""
+        for _ in range(START_ATTEMPTS):
+            mission = f"onehop-{uuid.uuid4().hex[:8]}"
+            endpoint = free_endpoint()
+            words = self._plan.out / "stderr"
+            with ProcessGroup(endpoint, mission, self._plan.robots, words) as group:
+                ending = self._run_once(group, mission, endpoint)
+            if ending is not None:
+                return self._summary_of(ending, group)
+        raise MissionError(f"no free port on loopback found in {START_ATTEMPTS} attempts")
+
+    def _summary_of(self, ending: Ending, group: ProcessGroup) -> dict[str, Any]:
+        """What the operator's session has heard; where it missed the end, what the recorder has left."""
+        left = read_summary(self._plan.out) if ending.digest is None else None
+        if left is not None:
+            return {**left, "processes": [process._asdict() for process in group.processes]}
+        log = str(self._log) if _written_ns(self._log) != self._log_before else None
+        return summarize(ending.outcome, ending.wall_s, ending.digest, log, group.processes)
+
+    def _run_once(self, group: ProcessGroup, mission: str, endpoint: str) -> Ending | None:
+        """One attempt; None when the port was taken in between."""
+        group.start_world(self._plan.world_arguments)
+        group.start_radio()
+        group.start_recorder(self._plan.out, self._plan.record, self._plan.claim)
+        for i in self._plan.robots:
+            group.start_robot(i)
+        bus = self._connect(group, mission, endpoint)
+        if not isinstance(bus, Bus):
+            return bus
+        with bus:
+            ending = OperatorSession(group, bus, self._stop, self._show, self._tell).until_end()
+            leave_s = 0.0 if ending.outcome.outcome == "aborted" else LEAVE_S
+            group.end(leave_s)  # while the router can answer
+        if group.said_something:
+            self._tell(f"what the processes said on stderr is in {self._plan.out / 'stderr'}")
+        return ending
+
+    def _connect(self, group: ProcessGroup, mission: str, endpoint: str) -> Bus | Ending | None:
+        """The operator's session as soon as the world listens, or the end of the mission before that.
+
+        None when somebody else listens there.
+        """
+        deadline = time.monotonic() + CONNECT_S
+        stopped_from = math.inf
+        while True:
+            now = time.monotonic()
+            stopped_from = min(stopped_from, now) if group.is_stopped(topics.WORLD) else math.inf
+            if self._stop.number is not None:
+                return aborted(STOPPED, 0)
+            if now - stopped_from > STOPPED_S:
+                return aborted("the world process has been stopped, and was not continued", 0)
+            for death in group.deaths():
+                if "Address already in use" in death.account:
+                    return None
+                return ending_by_death(group, death.name, 0)
+            if group.exit_status(topics.WORLD) is not None:
+                return aborted(LOST_WORD, 0)
+            with contextlib.suppress(MissionError):
+                return open_client(
+                    mission, endpoint, topics.OPERATOR, group.operator_password, CONNECT_TRY_MS
+                )
+            if now > deadline:
+                raise MissionError(f"the world process has not opened the bus within {CONNECT_S:g} s")
+
+
+def _written_ns(path: Path) -> int | None:
+    """When a file was written last [ns], None if there is none."""
+    return path.stat().st_mtime_ns if path.exists() else None
 
 
 def world_arguments(

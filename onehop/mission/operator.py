@@ -1,7 +1,6 @@
 """The launcher on the bus of a running mission: it shows, restarts, tells of deaths, and stops."""
 
 import math
-import signal
 import time
 from collections.abc import Callable
 from typing import NamedTuple
@@ -10,6 +9,7 @@ from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.contracts.messages import Death, End, Outcome, Progress
 from onehop.mission.processes import ProcessGroup
+from onehop.mission.stops import StopRequest
 from onehop.node.bus import ALIVE, Bus
 from onehop.wire.codec import decode, encode
 
@@ -25,6 +25,12 @@ DIGEST_S = 30.0
 STOP_S = 10.0
 """How long the world may take to end the mission when it is told to [s]."""
 
+STOPPED = "stopped by the operator"
+"""Reason of a mission whose launcher was asked to end."""
+
+LOST_WORD = "the world process ended, and its last word was lost"
+"""Reason of a mission of whose end nothing is known."""
+
 CANNOT_RUN = 2
 """Exit status of a process whose last words say what a person has to mend."""
 
@@ -35,7 +41,6 @@ class Ending(NamedTuple):
     outcome: Outcome
     wall_s: float
     digest: str | None
-    interrupted: bool = False
 
 
 def aborted(reason: str, ticks: int) -> Ending:
@@ -56,18 +61,21 @@ def ending_by_death(group: ProcessGroup, name: str, ticks: int) -> Ending:
 class OperatorSession:
     """One mission from the moment at which its bus is there.
 
-    show: takes progress, some times a second. tell: takes lines for people.
+    stop: whether people want it to end. show: takes progress, some times a second. tell: takes lines for
+    people.
     """
 
     def __init__(
         self,
         group: ProcessGroup,
         bus: Bus,
+        stop: StopRequest,
         show: Callable[[Progress], None],
         tell: Callable[[str], None],
     ) -> None:
         self._group = group
         self._bus = bus
+        self._stop = stop
         self._show = show
         self._tell = tell
         self._tick = 0
@@ -77,32 +85,22 @@ class OperatorSession:
         self._unreported: list[Death] = []
         self._world_listens = False
         self._gone_s = math.inf
-        self._stop_s = math.inf
+        self._stop_told = False
         self._control = bus.publisher(topics.by(topics.OPERATOR, topics.CONTROL))
         self._report = bus.publisher(topics.by(topics.OPERATOR, topics.DIED))
         bus.watch(topics.WORLD)
 
     def until_end(self) -> Ending:
         """Watch over the mission to its end. Raises MissionError when it could not be run."""
-        previous = {
-            number: signal.signal(number, self._on_signal) for number in (signal.SIGINT, signal.SIGTERM)
-        }
-        try:
-            self._watch()
-        finally:
-            for number, handler in previous.items():
-                signal.signal(number, handler)
-        return self._ending()._replace(interrupted=self._stop_s < math.inf)
-
-    def _on_signal(self, *_: object) -> None:
-        self._stop_s = min(self._stop_s, time.monotonic())
-        self._control(b"stop")
+        self._watch()
+        return self._ending()
 
     def _watch(self) -> None:
         """Until outcome and digest are there, or nothing more can come."""
         while self._end is None or self._digest is None:
             received = self._bus.receive_by(time.monotonic() + POLL_S)
             self._look_at_children()
+            self._pass_on_stop()
             if received is not None:
                 self._take(*received)
             elif self._is_all_over(time.monotonic()):
@@ -117,6 +115,12 @@ class OperatorSession:
             for death in self._unreported:
                 self._report(encode(death))
             self._unreported.clear()
+
+    def _pass_on_stop(self) -> None:
+        """Tell the world, once, that the mission is to end."""
+        if self._stop.number is not None and self._world_listens and not self._stop_told:
+            self._stop_told = True
+            self._control(b"stop")
 
     def _take(self, what: str, data: bytes) -> None:
         if what == topics.PROGRESS:
@@ -144,8 +148,8 @@ class OperatorSession:
         """Why a world whose process runs is not waited for any more."""
         if now - self._gone_s > GONE_S:
             return "the world process is gone from the bus: stopped, or cut off"
-        if now - self._stop_s > STOP_S:
-            return "stopped by the operator, and the world did not end the mission"
+        if self._stop.number is not None and now - self._stop.at_s > STOP_S:
+            return f"{STOPPED}, and the world did not end the mission"
         return None
 
     def _ending(self) -> Ending:
@@ -153,5 +157,4 @@ class OperatorSession:
             return Ending(self._end.outcome, self._end.wall_s, self._digest)
         if self._group.exit_status(topics.WORLD):
             return ending_by_death(self._group, topics.WORLD, self._tick)
-        lost = "the world process ended, and its last word was lost"
-        return aborted(self._given_up(time.monotonic()) or lost, self._tick)
+        return aborted(self._given_up(time.monotonic()) or LOST_WORD, self._tick)

@@ -1,6 +1,7 @@
 """The processes of one mission: children of the launcher, started, restarted, watched, ended."""
 
 import os
+import resource
 import shutil
 import signal
 import socket
@@ -12,7 +13,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from onehop.contracts import topics
+from onehop.contracts.errors import InputError
 from onehop.contracts.messages import Death
+from onehop.contracts.plain_text import plain
 from onehop.node.bus import make_credentials
 from onehop.node.startup import CREDENTIALS_VARIABLE, PASSWORD_VARIABLE, WORLD_IS_GONE
 from onehop.wire.summary import Process
@@ -22,6 +25,25 @@ GRACE_S = 3.0
 
 LAST_WORDS = 300
 """Characters of a child's last line that are repeated where its death is told."""
+
+OPEN_FILES = 48
+"""Descriptors that the world needs beside one for each of its clients; it has 11 when all goes well, and
+reads its modules' files before."""
+
+
+def require_descriptors(clients: int) -> None:
+    """See that the world can hold a connection to each client, as far as this user may decide.
+
+    Raises InputError when the hard limit is too low.
+    """
+    needed = OPEN_FILES + clients
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    if hard != resource.RLIM_INFINITY and hard < needed:
+        raise InputError(
+            "open files", f"{hard} are allowed here, {needed} are needed", f"ulimit -n {needed} or more"
+        )
+    if soft != resource.RLIM_INFINITY and soft < needed:
+        resource.setrlimit(resource.RLIMIT_NOFILE, (needed, hard))
 
 
 def free_endpoint() -> str:
@@ -45,6 +67,7 @@ class ProcessGroup:
 
     Each gets its own password through its environment, a lifeline that ends it when this process dies,
     and a file in the folder `words` for what it says on stderr. If nobody said anything the folder goes.
+    Raises InputError when this system does not let so many processes work together.
     """
 
     def __init__(self, endpoint: str, mission: str, robots: Sequence[int], words: Path) -> None:
@@ -52,12 +75,13 @@ class ProcessGroup:
         self._mission = mission
         self._words = words
         names = [topics.RADIO, topics.RECORDER, topics.OPERATOR, *map(topics.robot_name, robots)]
+        require_descriptors(len(names))
         self._passwords = make_credentials(names)
         self._lifeline, self._keep_open = os.pipe()
         self._children: dict[str, _Child] = {}
         self.processes: list[Process] = []
         shutil.rmtree(words, ignore_errors=True)  # of an earlier mission in the same folder
-        words.mkdir(parents=True)
+        words.mkdir()
 
     def __enter__(self) -> "ProcessGroup":
         return self
@@ -67,7 +91,7 @@ class ProcessGroup:
         os.close(self._keep_open)
         os.close(self._lifeline)
         if not self.said_something:
-            shutil.rmtree(self._words)
+            shutil.rmtree(self._words, ignore_errors=True)
 
     @property
     def operator_password(self) -> str:
@@ -76,7 +100,7 @@ class ProcessGroup:
     @property
     def said_something(self) -> bool:
         """Whether any child has said something on stderr: none has a reason to, if all is well."""
-        return any(file.stat().st_size for file in self._words.iterdir())
+        return any(file.stat().st_size for file in self._words.glob("*"))
 
     def start_world(self, arguments: Sequence[str]) -> None:
         self._start(topics.WORLD, "world_server", [*arguments, "--listen", self._endpoint])
@@ -84,15 +108,22 @@ class ProcessGroup:
     def start_radio(self) -> None:
         self._start(topics.RADIO, "radio_proxy", ["--connect", self._endpoint])
 
-    def start_recorder(self, out: Path, with_file: bool) -> None:
-        arguments = ["--connect", self._endpoint, "--out", str(out)]
-        self._start(topics.RECORDER, "onehop.recorder", arguments + ([] if with_file else ["--no-file"]))
+    def start_recorder(self, out: Path, with_file: bool, claim: int) -> None:
+        """claim: descriptor that holds the folder `out`, from now on for the recorder too."""
+        arguments = [
+            "--connect",
+            self._endpoint,
+            "--out",
+            str(out),
+            *([] if with_file else ["--no-file"]),
+        ]
+        self._start(topics.RECORDER, "onehop.recorder", arguments, claim)
 
     def start_robot(self, robot: int) -> None:
         arguments = ["--id", str(robot), "--connect", self._endpoint]
         self._start(topics.robot_name(robot), "robot_agent", arguments)
 
-    def _start(self, name: str, module: str, arguments: Sequence[str]) -> None:
+    def _start(self, name: str, module: str, arguments: Sequence[str], *inherited: int) -> None:
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
         if name in self._passwords:
             environment[PASSWORD_VARIABLE] = self._passwords[name]
@@ -106,7 +137,7 @@ class ProcessGroup:
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=stderr,
-                pass_fds=(self._lifeline,),
+                pass_fds=(self._lifeline, *inherited),
                 env=environment,
                 start_new_session=True,
             )
@@ -117,6 +148,13 @@ class ProcessGroup:
     def exit_status(self, name: str) -> int | None:
         """Exit status of a child, negative for a signal, None while it runs."""
         return self._children[name].process.poll()
+
+    def is_stopped(self, name: str) -> bool:
+        """Whether a child has been stopped (SIGSTOP, SIGTSTP) and not been continued."""
+        process = self._children[name].process
+        if process.poll() is not None:
+            return False
+        return os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WNOHANG | os.WNOWAIT) is not None
 
     def deaths(self) -> list[Death]:
         """Children that have died since the last call, other than because the world was gone."""
@@ -130,16 +168,19 @@ class ProcessGroup:
     def account(self, name: str) -> str:
         """How a child that has ended did so, with its last words, in one line."""
         status = self._children[name].process.returncode
-        how = signal.Signals(-status).name if status < 0 else f"exit status {status}"
+        how = _signal_name(-status) if status < 0 else f"exit status {status}"
         account, words = f"the {name} process died ({how})", self.last_words(name)
         if not words:
             return account
         return f"{account}: {words:.{LAST_WORDS}}; all it said is in {self._file(name)}"
 
     def last_words(self, name: str) -> str:
-        """The last line that a child said on stderr, empty if it said nothing."""
-        lines = self._file(name).read_text(errors="replace").strip().splitlines()
-        return lines[-1].strip() if lines else ""
+        """The last line that a child said on stderr, empty if it said nothing or the file is gone."""
+        try:
+            lines = self._file(name).read_text(errors="replace").strip().splitlines()
+        except OSError:
+            return ""
+        return plain(lines[-1].strip()) if lines else ""
 
     def _file(self, name: str) -> Path:
         return self._words / f"{name}.txt"
@@ -158,6 +199,13 @@ class ProcessGroup:
             for process in running:
                 process.send_signal(number)
             _wait(running, wait_s)
+
+
+def _signal_name(number: int) -> str:
+    try:
+        return signal.Signals(number).name
+    except ValueError:  # a real-time signal
+        return f"signal {number}"
 
 
 def _wait(processes: Sequence[subprocess.Popen[bytes]], seconds: float) -> None:

@@ -222,13 +222,13 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
     }
     if credentials is None:
         return Bus(_open(settings), mission, topics.WORLD)
-    with tempfile.NamedTemporaryFile("w", prefix="onehop-") as dictionary:  # readable by its owner only
+    with tempfile.TemporaryFile("w") as dictionary:  # it has no name that could outlive this process
         dictionary.writelines(f"{name}:{word}\n" for name, word in credentials.items())
         dictionary.flush()
         settings["transport/auth/usrpwd"] = {
             "user": topics.WORLD,
             "password": secrets.token_hex(16),
-            "dictionary_file": dictionary.name,
+            "dictionary_file": f"/dev/fd/{dictionary.fileno()}",
         }
         settings["access_control"] = access_control(mission, credentials)
         return Bus(_open(settings), mission, topics.WORLD)

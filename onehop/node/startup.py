@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import faulthandler
 import gc
 import os
 import signal
@@ -14,6 +15,7 @@ from onehop.contracts import topics
 from onehop.contracts.errors import MissionError, OnehopError
 from onehop.node import lifeline
 from onehop.node.bus import Bus, open_client
+from onehop.node.own_settings import keep_to_own_settings
 
 PASSWORD_VARIABLE = "ONEHOP_PASSWORD"
 """Environment variable with a process's password; an argument would show in ps."""
@@ -47,7 +49,10 @@ def start(options: argparse.Namespace) -> None:
 
     On Linux the scheduler is told that this is no interactive program: a process that wakes up does not
     push the running one from its core, so every tick takes fewer switches (15 % more ticks a second).
+    A crash in a library's machine code leaves a traceback too.
     """
+    faulthandler.enable()
+    keep_to_own_settings()
     if hasattr(os, "SCHED_BATCH"):
         with contextlib.suppress(PermissionError):  # a container may forbid it
             os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))
@@ -88,16 +93,25 @@ def calm_garbage_collector() -> None:
 def main(body: Callable[[], int]) -> None:
     """Run a process to its exit status; what a person can mend is one line on stderr, status 2.
 
-    A bug is a traceback, status 1. Either way the process ends here, whatever threads it still has.
+    A bug, or a library's panic, is a traceback, status 1. Either way the process ends here, whatever
+    threads it still has, and also when there is no room for its words.
     """
     try:
         status = body()
     except OnehopError as error:
-        print(error, file=sys.stderr)
         status = 2
-    except Exception:
-        traceback.print_exc()
+        _say(f"{error}\n")
+    except SystemExit:  # what was typed is wrong, and has been said
+        raise
+    except KeyboardInterrupt:
+        status = 128 + signal.SIGINT
+    except BaseException:
         status = 1
-    sys.stdout.flush()
-    sys.stderr.flush()
+        _say(traceback.format_exc())
     os._exit(status)
+
+
+def _say(words: str) -> None:
+    with contextlib.suppress(OSError):
+        sys.stderr.write(words)
+        sys.stderr.flush()

@@ -7,6 +7,7 @@ time on a fixed epoch, sequence is the tick.
 """
 
 import json
+import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -64,6 +65,11 @@ class LogWriter:
                 channel = self._writer.register_channel(topics.wire(key), "msgpack", 0)
                 self._channels[key] = channel
             self._writer.add_message(channel, stamp, data, stamp, tick)
+
+    @property
+    def is_deleted(self) -> bool:
+        """Whether the file has no name any more: what is written is lost when it is closed."""
+        return os.fstat(self._stream.fileno()).st_nlink == 0
 
     def flush(self) -> None:
         """Hand everything so far to the operating system (not to the disk: no fsync)."""

@@ -1,6 +1,7 @@
 """The summary of a mission: what `onehop run` prints and summary.json holds.
 
-One process of a mission writes the file: the launcher; without one the recorder; inline the run itself.
+The recorder writes the file when it has finished the log. A launcher writes it again with what it alone
+knows, and takes from it what it has missed. Inline the run itself writes it.
 """
 
 import json
@@ -10,6 +11,7 @@ from typing import Any, NamedTuple
 
 from onehop.contracts.messages import Outcome
 from onehop.wire.codec import as_map
+from onehop.wire.output_folder import REMEDY, SUMMARY, explained
 
 
 class Process(NamedTuple):
@@ -45,10 +47,22 @@ def summarize(
 
 def summary_file(folder: Path) -> Path:
     """Where the summary of the mission lies whose output goes to `folder`."""
-    return folder / "summary.json"
+    return folder / SUMMARY
 
 
 def write_summary(folder: Path, summary: Mapping[str, Any]) -> None:
-    """Write summary.json."""
-    folder.mkdir(parents=True, exist_ok=True)
-    summary_file(folder).write_text(json.dumps(summary, indent=1) + "\n")
+    """Write summary.json, whole or not at all. Raises InputError."""
+    path = summary_file(folder)
+    draft = path.with_name(path.name + ".part")
+    with explained(path, REMEDY):
+        draft.write_text(json.dumps(summary, indent=1) + "\n")
+        draft.replace(path)
+
+
+def read_summary(folder: Path) -> dict[str, Any] | None:
+    """What write_summary has left in a folder; None if it has not."""
+    try:
+        summary: dict[str, Any] = json.loads(summary_file(folder).read_text())
+    except FileNotFoundError:
+        return None
+    return summary

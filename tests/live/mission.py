@@ -1,9 +1,11 @@
 """A mission as a child of the test, with its own children, which tests kill and stop."""
 
 import json
+import os
 import subprocess
 import sys
 import time
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +15,18 @@ DEADLINE_S = 120.0
 
 
 class Mission:
-    """`onehop run` of the small scene in a child, with its log growing in `out`."""
+    """`onehop run` of the small scene in a child, with its log growing in `out`.
 
-    def __init__(self, folder: Path, *settings: str) -> None:
+    shell: what a shell does before, such as `ulimit`. environment: added to ours.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        *settings: str,
+        shell: str = "",
+        environment: Mapping[str, str] | None = None,
+    ) -> None:
         self.out = folder / "out"
         scenario = folder / "field.toml"
         scenario.write_text(FIELD)
@@ -31,8 +42,15 @@ class Mission:
         ]
         for setting in settings:
             command += ["--set", setting]
+        if shell:
+            command = ["bash", "-c", f'{shell}; exec "$@"', "bash", *command]
         self.child = subprocess.Popen(
-            command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+            command,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+            env={**os.environ, **(environment or {})},
         )
 
     def finish(self) -> dict[str, Any]:

@@ -150,18 +150,6 @@ def test_a_stopped_robot_is_fenced_as_well(mission: Mission) -> None:
     assert digest(_replayed(mission)) == summary["digest"]
 
 
-def test_the_last_words_of_a_process_are_told_and_kept(tmp_path: Path) -> None:
-    """A folder stands where the recorder wants to write its log."""
-    (tmp_path / "out" / "mission.mcap").mkdir(parents=True)
-    mission = Mission(tmp_path, "clock.limit_s=5")
-    summary = mission.finish()
-    words = mission.out / "stderr" / "recorder.txt"
-    assert summary["reason"].startswith("the recorder process died (exit status 1): IsADirectoryError")
-    assert summary["reason"].endswith(f"all it said is in {words}")
-    assert words.read_text().startswith("Traceback")
-    assert [file.name for file in words.parent.iterdir() if file.stat().st_size] == ["recorder.txt"]
-
-
 def test_what_the_world_finds_wrong_is_one_line_and_exit_status_2(tmp_path: Path) -> None:
     mission = Mission(tmp_path, "start.x=20", "start.y=26")
     printed, said = mission.child.communicate(timeout=DEADLINE_S)

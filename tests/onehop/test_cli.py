@@ -1,6 +1,9 @@
 """The command line: exit status, one line for what was typed wrong, one JSON object for scripts."""
 
 import json
+import os
+import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -8,13 +11,28 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
+from onehop.cli import main
+from onehop.mission.stops import ENDS
 from onehop.wire.log_reader import LogFile, digest
 from tests.onehop.scenes import FIELD, field, log_of
 
 
-def onehop(*arguments: str | Path, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+def onehop(
+    *arguments: str | Path, cwd: Path | None = None, shell: str = "", **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """Run the command. shell: what a shell does before it, such as `ulimit`."""
     command = [sys.executable, "-m", "onehop", *map(str, arguments)]
-    return subprocess.run(command, capture_output=True, text=True, timeout=120, check=False, cwd=cwd)
+    if shell:
+        command = ["bash", "-c", f'{shell}; exec "$@"', "bash", *command]
+    return subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        cwd=cwd,
+        env={**os.environ, **environment},
+    )
 
 
 @pytest.fixture(scope="module")
@@ -143,3 +161,242 @@ def test_doctor_finds_everything_that_a_run_needs_here() -> None:
     answer = onehop("doctor", "--json")
     assert answer.returncode == 0
     assert json.loads(answer.stdout)["healthy"] is True
+
+
+@pytest.mark.parametrize(
+    ("limit", "check"),
+    [("ulimit -n 30", "open files"), ("ulimit -f 0", "working folder")],
+)
+def test_doctor_tries_what_it_vouches_for(tmp_path: Path, limit: str, check: str) -> None:
+    answer = onehop("doctor", "--json", cwd=tmp_path, shell=limit)
+    assert answer.returncode == 1
+    found = json.loads(answer.stdout)
+    assert found["healthy"] is False
+    assert check in [one["name"] for one in found["checks"] if one["required"] and not one["ok"]]
+
+
+@pytest.fixture(scope="module")
+def inputs(tmp_path_factory: pytest.TempPathFactory, recorded: Path) -> dict[str, str]:
+    """Files that are sound, so that only the number can be what is wrong."""
+    folder = tmp_path_factory.mktemp("inputs")
+    (folder / "field.toml").write_text(FIELD)
+    return {"SCENARIO": str(folder / "field.toml"), "LOG": str(recorded)}
+
+
+NO_NUMBERS = ("nan", "inf", "-inf", "1e400", "-1", "1e308", str(2**64), "9" * 5000, "", "x")
+
+OPTIONS = [
+    ("run SCENARIO", "--seed"),
+    ("plan SCENARIO", "--seed"),
+    ("plan SCENARIO", "--cell"),
+    ("elect 1,2,4", "--spacing"),
+    ("link", "--distance"),
+    ("link", "--rate"),
+    ("link", "--msdu"),
+    ("link", "--seed"),
+    ("link", "--seconds"),
+    ("saturate", "--stations"),
+    ("saturate", "--rate"),
+    ("saturate", "--msdu"),
+    ("saturate", "--seed"),
+    ("saturate", "--seconds"),
+    ("replay LOG", "--robot"),
+    ("replay LOG", "--from"),
+    ("replay LOG", "--to"),
+    ("explain LOG --at 1", "--robot"),
+    ("explain LOG --robot 1", "--at"),
+    ("explain LOG --robot 1 --at 1", "--window"),
+]
+
+
+@pytest.mark.parametrize(("command", "option"), OPTIONS)
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: value[:8] or "empty")
+def test_what_is_no_number_of_its_unit_is_refused_in_one_line(
+    inputs: dict[str, str], capsys: pytest.CaptureFixture[str], command: str, option: str, value: str
+) -> None:
+    words = [inputs.get(word, word) for word in command.split()]
+    assert _exit_status([*words, option, value]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert told.err.startswith("onehop: ")
+    assert told.err.count("\n") == 1
+    assert option in told.err
+
+
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=lambda value: value[:8] or "empty")
+@pytest.mark.parametrize("option", ["--start", "--goal"])
+def test_a_point_has_two_numbers(
+    inputs: dict[str, str], capsys: pytest.CaptureFixture[str], option: str, value: str
+) -> None:
+    assert _exit_status(["plan", inputs["SCENARIO"], f"{option}={value},2"]) == 2
+    assert capsys.readouterr().err.count("\n") == 1
+
+
+def _exit_status(words: list[str]) -> object:
+    """That of the command line, run in this process; signal handlers come back after it."""
+    before = {number: signal.getsignal(number) for number in ENDS}
+    try:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(sys, "argv", ["onehop", *words])
+            patch.setenv("MPLBACKEND", "agg")  # the command sets it, and leaves it set
+            with pytest.raises(SystemExit) as end:
+                main()
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+    return end.value.code
+
+
+@pytest.mark.parametrize("place", ["FILE", "FILE/below", "/proc/x"])
+@pytest.mark.parametrize("driver", ["inline", "processes"])
+def test_a_folder_that_cannot_be_written_is_refused_before_the_mission(
+    tmp_path: Path, place: str, driver: str
+) -> None:
+    (tmp_path / "field.toml").write_text(FIELD)
+    (tmp_path / "FILE").touch()
+    answer = onehop("run", "field.toml", "--driver", driver, "--out", place, cwd=tmp_path)
+    assert answer.returncode == 2
+    assert answer.stderr.startswith(f"onehop: {place}: No")
+    assert answer.stderr.count("\n") == 1
+
+
+def test_a_folder_in_the_place_of_the_log_is_refused_before_the_mission(tmp_path: Path) -> None:
+    (tmp_path / "field.toml").write_text(FIELD)
+    (tmp_path / "out" / "mission.mcap").mkdir(parents=True)
+    answer = onehop("run", "field.toml", "--out", "out", cwd=tmp_path)
+    assert answer.returncode == 2
+    assert answer.stderr.startswith("onehop: out/mission.mcap: Not a regular file")
+
+
+def test_a_disk_that_fills_up_is_one_line_and_the_log_stays_up_to_there(tmp_path: Path) -> None:
+    (tmp_path / "field.toml").write_text(FIELD)
+    answer = onehop(
+        "run", "field.toml", "--driver", "inline", "--out", "out", cwd=tmp_path, shell="ulimit -f 400"
+    )
+    assert answer.returncode == 2
+    assert answer.stderr.splitlines()[-1].startswith("onehop: out/mission.mcap: File too large")
+    assert "Traceback" not in answer.stderr
+    log = LogFile(tmp_path / "out" / "mission.mcap")
+    assert log.torn
+    assert sum(1 for _ in log.ticks()) > 100
+
+
+def test_what_the_world_refuses_leaves_an_older_log_alone(tmp_path: Path, recorded: Path) -> None:
+    (tmp_path / "field.toml").write_text(FIELD)
+    (tmp_path / "out").mkdir()
+    shutil.copy(recorded, tmp_path / "out" / "mission.mcap")
+    answer = onehop(
+        "run", "field.toml", "--driver", "inline", "--start", "20,26", "--out", "out", cwd=tmp_path
+    )
+    assert answer.returncode == 2
+    assert (tmp_path / "out" / "mission.mcap").read_bytes() == recorded.read_bytes()
+
+
+@pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "garbage"])
+def test_a_notebooks_environment_does_no_harm(tmp_path: Path, backend: str) -> None:
+    (tmp_path / "field.toml").write_text(FIELD)
+    environment = {"MPLBACKEND": backend, "ZENOH_RUNTIME": "garbage"}
+    limit = ("--set", "clock.limit_s=1")
+    answer = onehop(
+        "run", "field.toml", "--driver", "inline", *limit, "--out", "out", cwd=tmp_path, **environment
+    )
+    assert (answer.returncode, answer.stderr.count("\n")) == (1, 1)  # a line of progress
+    assert (tmp_path / "out" / "trajectory.png").stat().st_size > 10_000
+    assert onehop("doctor", **environment).returncode == 0
+
+
+PANIC = """
+import sys
+from onehop import cli
+cli.keep_to_own_settings = lambda: None
+sys.argv = ["onehop", "doctor"]
+cli.main()
+"""
+
+
+def test_a_panic_of_a_library_is_one_line_and_status_2() -> None:
+    """Zenoh panics over a variable that the command keeps from it; Rust has said so before."""
+    answer = subprocess.run(
+        [sys.executable, "-c", PANIC],
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "ZENOH_RUNTIME": "garbage"},
+    )
+    assert answer.returncode == 2
+    assert answer.stderr.splitlines()[-1].startswith("onehop: a library failed: ")
+    assert "Traceback" not in answer.stderr
+
+
+BARE = ("plan", "field.toml", "--start", "8,8", "--goal")
+
+
+def test_a_goal_where_the_robot_stands_is_reached(tmp_path: Path) -> None:
+    (tmp_path / "field.toml").write_text(FIELD)
+    answer = onehop(*BARE, "8,8", "--json", cwd=tmp_path)
+    found = json.loads(answer.stdout)
+    assert answer.returncode == 0
+    assert (found["reached"], found["path_length_m"], found["shortest_m"]) == (True, 0.0, 0.0)
+    assert "shortest       0.0 m on the known map\n" in onehop(*BARE, "8,8", cwd=tmp_path).stdout
+
+
+@pytest.mark.parametrize(
+    ("ending", "beginning"), [("png", b"\x89PNG"), ("SVG", b"<?xml"), ("pdf", b"%PDF-")]
+)
+def test_a_figure_is_what_its_ending_says(tmp_path: Path, ending: str, beginning: bytes) -> None:
+    (tmp_path / "field.toml").write_text(FIELD)
+    written = []
+    for number in (1, 2):
+        figure = tmp_path / f"{number}.{ending}"
+        assert onehop(*BARE, "10,8", "--figure", figure, cwd=tmp_path).returncode == 0
+        written.append(figure.read_bytes())
+    assert written[0].startswith(beginning)
+    assert written[0] == written[1]
+
+
+@pytest.mark.parametrize("figure", ["x.jpg", "x", "none/x.png", "FOLDER.png", "/proc/x.png"])
+def test_a_figure_that_cannot_be_written_is_refused_before_the_way_is_driven(
+    tmp_path: Path, figure: str
+) -> None:
+    """The start is refused too, but later."""
+    (tmp_path / "field.toml").write_text(FIELD)
+    (tmp_path / "FOLDER.png").mkdir()
+    answer = onehop("plan", "field.toml", "--start", "20,26", "--figure", figure, cwd=tmp_path)
+    assert answer.returncode == 2
+    assert figure in answer.stderr
+    assert answer.stderr.count("\n") == 1
+
+
+def test_output_that_cannot_be_written_is_one_line_and_status_2() -> None:
+    full = onehop("elect", "1,2,4", shell="exec >/dev/full")
+    assert (full.returncode, full.stderr) == (2, "onehop: No space left on device\n")
+    assert onehop("elect", "1,2,4", shell="exec >&-").returncode == 0
+
+
+def test_a_name_that_does_not_print_is_shown_in_one_line(tmp_path: Path) -> None:
+    answer = onehop("run", "no\n\x1b[31mwhere.toml", cwd=tmp_path)
+    assert answer.returncode == 2
+    assert answer.stderr.startswith("onehop: no\\n\\x1b[31mwhere.toml: ")
+    assert answer.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_inline_mission_that_is_asked_to_end_finishes_its_log(
+    tmp_path: Path, number: signal.Signals
+) -> None:
+    (tmp_path / "field.toml").write_text(FIELD)
+    command = ["run", "field.toml", "--driver", "inline", "--out", "out"]
+    child = subprocess.Popen(
+        [sys.executable, "-m", "onehop", *command], cwd=tmp_path, stderr=subprocess.PIPE, text=True
+    )
+    assert child.stderr is not None
+    assert child.stderr.readline().startswith("field ")
+    child.send_signal(number)
+    _, said = child.communicate(timeout=60)
+    assert child.returncode == 128 + number
+    assert said.splitlines()[-1] == f"onehop: ended by {number.name}"
+    log = LogFile(tmp_path / "out" / "mission.mcap")
+    assert not log.torn
+    assert log.summary is not None
+    assert log.summary["reason"] == "stopped by the operator"
+    assert log.summary["digest"] == digest(log)

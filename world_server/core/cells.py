@@ -7,11 +7,11 @@ cost of both follows what is near and not the size of the map.
 import math
 from typing import NamedTuple, TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts.arrays import FloatArray
+from onehop.contracts.kernels import kernel
 from onehop.maps.walls import Bounds
 
 IntArray: TypeAlias = npt.NDArray[np.int32]
@@ -38,7 +38,7 @@ class CellList(NamedTuple):
     segments: FloatArray
 
 
-@numba.njit(cache=True)
+@kernel()
 def point_gap(x: float, y: float, x0: float, y0: float, x1: float, y1: float) -> float:
     """Distance from a point to a segment [m]."""
     ex, ey = x1 - x0, y1 - y0
@@ -50,7 +50,7 @@ def point_gap(x: float, y: float, x0: float, y0: float, x1: float, y1: float) ->
     return math.sqrt(dx * dx + dy * dy)
 
 
-@numba.njit(cache=True)
+@kernel()
 def _fill(
     segments: FloatArray, frame: FloatArray, columns: int, rows: int, reach: float,
     first: IntArray, items: IntArray,
@@ -94,7 +94,7 @@ def cell_list(segments: FloatArray, bounds: Bounds, reach: float) -> CellList:
     return CellList(frame, columns, rows, first, np.ascontiguousarray(gathered))
 
 
-@numba.njit(cache=True)
+@kernel()
 def cell_at(frame: FloatArray, columns: int, rows: int, x: float, y: float) -> int:
     """Number of the cell of a point; a point outside the map gets the nearest cell."""
     column = min(columns - 1, max(0, int((x - frame[0]) / frame[2])))

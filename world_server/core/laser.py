@@ -10,12 +10,12 @@ Leaves out: noise, beam width and mirror speed; all beams of a scan are taken at
 import math
 from typing import TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts.arrays import FloatArray
 from onehop.contracts.beams import Beams
+from onehop.contracts.kernels import kernel
 from onehop.contracts.sections import RobotSection
 from onehop.maps.walls import WallMap
 from world_server.core.cells import CellList, IntArray, cell_at, cell_list
@@ -27,7 +27,7 @@ _SLACK = 1e-4
 """What `_direction` may be wrong by, and an interval is widened by at each end [rad]."""
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _direction(x: float, y: float) -> float:
     """atan2(y, x) within _SLACK: cheap, since it only selects the beams that are tested exactly.
 
@@ -47,7 +47,7 @@ def _direction(x: float, y: float) -> float:
     return -angle if y < 0.0 else angle
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _edge_beams(
     ax: float, ay: float, bx: float, by: float, first: int, last: int,
     directions: FloatArray, ranges: FloatArray,
@@ -68,7 +68,7 @@ def _edge_beams(
             ranges[beam] = reach
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _inner_beams(
     ax: float, ay: float, bx: float, by: float, first: int, last: int,
     directions: FloatArray, ranges: FloatArray,
@@ -84,7 +84,7 @@ def _inner_beams(
         inner[beam] = reach if reach < inner[beam] else inner[beam]
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _look_at_wall(
     ax: float, ay: float, bx: float, by: float, limit: float, half: float, per_radian: float,
     directions: FloatArray, ranges: FloatArray,
@@ -119,7 +119,7 @@ def _look_at_wall(
         _edge_beams(ax, ay, bx, by, 0, right, directions, ranges)
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _look_at_disc(
     cx: float, cy: float, radius: float, limit: float, half: float, per_radian: float,
     directions: FloatArray, ranges: FloatArray,
@@ -145,7 +145,7 @@ def _look_at_disc(
                 ranges[beam] = reach
 
 
-@numba.njit(cache=True, error_model="numpy")
+@kernel(error_model="numpy")
 def _scan_all(
     poses: FloatArray, looking: IntArray, radius: float, limit: float, half: float,
     directions: FloatArray, frame: FloatArray, columns: int, rows: int, first: IntArray,

@@ -14,12 +14,12 @@ Leaves out: mass, friction and impact.
 import math
 from typing import TypeAlias
 
-import numba
 import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts.arrays import BoolArray, FloatArray
 from onehop.contracts.geometry import TAU
+from onehop.contracts.kernels import kernel
 from onehop.contracts.sections import RobotSection
 from onehop.maps.walls import WallMap
 from world_server.core.cells import CellList, cell_at, cell_list, point_gap
@@ -46,7 +46,7 @@ _MARGIN = 0.05
 Rows: TypeAlias = npt.NDArray[np.int64]
 
 
-@numba.njit(cache=True)
+@kernel()
 def _place(pose: FloatArray, v: float, w: float, time: float) -> tuple[float, float]:
     """Where the arc leads in `time` [s]: a chord of length v*time*sin(z)/z, z half the turn.
 
@@ -61,7 +61,7 @@ def _place(pose: FloatArray, v: float, w: float, time: float) -> tuple[float, fl
     return pose[0] + chord * ahead, pose[1] + chord * left
 
 
-@numba.njit(cache=True)
+@kernel()
 def _wall_gap(x: float, y: float, radius: float, cells: CellList) -> float:
     """Distance from a robot's rim to the nearest wall in its cell list [m]."""
     frame, columns, rows, first, segments = cells
@@ -75,7 +75,7 @@ def _wall_gap(x: float, y: float, radius: float, cells: CellList) -> float:
     return gap - radius
 
 
-@numba.njit(cache=True)
+@kernel()
 def _look_ahead(
     time: float, group: Rows, poses: FloatArray, twists: FloatArray, stops: FloatArray,
     moving: BoolArray, radius: float, cells: CellList, places: FloatArray,
@@ -103,7 +103,7 @@ def _look_ahead(
     return worst, safe
 
 
-@numba.njit(cache=True)
+@kernel()
 def _approach(
     i: int, j: int, time: float, poses: FloatArray, twists: FloatArray, places: FloatArray
 ) -> float:
@@ -113,7 +113,7 @@ def _approach(
     return float(twists[i, 0] * (ahead * dx + left * dy))
 
 
-@numba.njit(cache=True)
+@kernel()
 def _stop_colliding(
     free: float, hit: float, group: Rows, poses: FloatArray, twists: FloatArray, stops: FloatArray,
     moving: BoolArray, radius: float, cells: CellList, places: FloatArray, touched: Rows,
@@ -145,7 +145,7 @@ def _stop_colliding(
             stops[i] = free
 
 
-@numba.njit(cache=True)
+@kernel()
 def _sweep(
     period: float, group: Rows, poses: FloatArray, twists: FloatArray, stops: FloatArray,
     moving: BoolArray, radius: float, cells: CellList, places: FloatArray, touched: Rows,
@@ -181,7 +181,7 @@ def _sweep(
         _, safe = _look_ahead(time, group, poses, twists, stops, moving, radius, cells, places)
 
 
-@numba.njit(cache=True)
+@kernel()
 def _group_rows(
     period: float, poses: FloatArray, twists: FloatArray, radius: float
 ) -> tuple[Rows, Rows]:
@@ -204,7 +204,7 @@ def _group_rows(
     return label, sizes
 
 
-@numba.njit(cache=True)
+@kernel()
 def _drive(period: float, poses: FloatArray, twists: FloatArray, radius: float, cells: CellList) -> Rows:
     """Move everyone through one period, in place; what each robot drove into, (n,)."""
     count = len(poses)

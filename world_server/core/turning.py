@@ -7,7 +7,7 @@ Microsystems 1993), made of +, - and * only, which the compiler neither reorders
 
 import math
 
-import numba
+from onehop.contracts.kernels import kernel
 
 _RIGHT_ANGLES = 2.0 / math.pi
 _QUARTER = 1.57079632673412561417
@@ -15,7 +15,7 @@ _QUARTER_REST = 6.07710050650619224932e-11
 """pi/2 in two parts, the first of 33 bits: its product with a small whole number is exact."""
 
 
-@numba.njit(cache=True)
+@kernel()
 def direction(angle: float) -> tuple[float, float]:
     """Cosine and sine of an angle below 10^5 rad in size, each within 2e-16."""
     quarters = math.floor(angle * _RIGHT_ANGLES + 0.5)
