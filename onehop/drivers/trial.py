@@ -112,7 +112,7 @@ def run_trial(scenario: Scenario, walls: WallMap) -> Trial:
     record, contacts, path = _Record(finder), 0, [poses[0].copy()]
     for tick in range(int(scenario.clock.limit_s * 1000 / scenario.clock.period_ms)):
         guidance = record.step(tick, _pose(poses), laser.scans(poses, LOOKING)[0])
-        if guidance.progress is not PlannerStatus.DRIVING:
+        if guidance.status is not PlannerStatus.DRIVING:
             break
         touched = motion.advance(poses, np.array([[guidance.twist.v, guidance.twist.w]]))
         contacts += int(touched[0] >= -1)
@@ -148,7 +148,7 @@ class _Record:
         began = time.perf_counter()
         guidance = self.finder.step(pose, scan)
         took = time.perf_counter() - began
-        self.status = guidance.progress
+        self.status = guidance.status
         self.notes += [(tick, note) for note in guidance.notes]
         after = self.finder.snapshot
         if after is not None and after is not before:

@@ -128,7 +128,7 @@ class LeaderMotion:
             self._pathfinder = self._make_pathfinder(self._briefing, pose, self._rng)
         followers = self._followers(pose, scan, team)
         guidance = self._pathfinder.step(pose, without_followers(scan, followers))
-        self._status = guidance.progress
+        self._status = guidance.status
         self._remaining = guidance.remaining
         if self._status is not PlannerStatus.DRIVING:
             return self._stop(team, guidance.notes)

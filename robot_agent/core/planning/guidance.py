@@ -23,7 +23,7 @@ class PlannerStatus(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Guidance:
-    """One tick of way-finding. progress: how far the pathfinder is.
+    """One tick of way-finding. status: how far the pathfinder is.
 
     remaining: estimate of the distance still to drive [m]. passage: free width of the passage that the
     robot is in or about to enter, seen by the laser to both sides [m]; inf in the open.
@@ -31,7 +31,7 @@ class Guidance:
     """
 
     twist: Twist
-    progress: PlannerStatus
+    status: PlannerStatus
     remaining: float
     passage: float
     waypoint: tuple[float, float]

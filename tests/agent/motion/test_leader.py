@@ -96,7 +96,7 @@ def test_a_narrow_passage_makes_a_column_and_the_decision_says_how_wide_it_is():
 def test_at_the_end_of_its_way_a_leader_stands_for_good_and_says_so_once(status):
     motion, way = leader()
     assert motion.decide(HERE, OPEN, FOUR).status is PlannerStatus.DRIVING
-    way.say(progress=status, remaining=0.3, notes=(Note("no_way", {}),))
+    way.say(status=status, remaining=0.3, notes=(Note("no_way", {}),))
     ended = motion.decide(HERE, OPEN, FOUR)
     assert (ended.planned, ended.status, ended.remaining) == (STANDSTILL, status, 0.3)
     assert ended.notes == (Note("no_way", {}),)
@@ -108,11 +108,11 @@ def test_at_the_end_of_its_way_a_leader_stands_for_good_and_says_so_once(status)
 
 def test_another_leadership_starts_with_another_way_and_another_trail():
     motion, way = leader()
-    way.say(progress=PlannerStatus.ARRIVED)
+    way.say(status=PlannerStatus.ARRIVED)
     motion.decide(HERE, OPEN, FOUR)
     motion.begin()
     assert motion.trail.points == []
-    way.say(progress=PlannerStatus.DRIVING)
+    way.say(status=PlannerStatus.DRIVING)
     assert motion.decide(Pose(5.0, 5.0, 0.0), OPEN, FOUR).status is PlannerStatus.DRIVING
     assert motion.trail.points == [(5.0, 5.0)]
 

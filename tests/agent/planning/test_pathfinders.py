@@ -160,9 +160,9 @@ def test_a_leader_that_never_comes_closer_gives_up_in_the_end_and_says_that_it_p
     finder.budget.spend(1999.9 * RobotSection().laser_range)
     for _ in range(6 * 170):
         guidance = finder.step(Pose(5.0, 5.0, 0.0), scan[0])
-        if guidance.progress is not PlannerStatus.DRIVING:
+        if guidance.status is not PlannerStatus.DRIVING:
             break
-    assert guidance.progress is PlannerStatus.NO_WAY
+    assert guidance.status is PlannerStatus.NO_WAY
     assert [note.data["proven"] for note in guidance.notes if note.kind == "no_way"] == [False]
 
 
@@ -215,11 +215,11 @@ def test_distbug_alone_leaves_the_trap() -> None:
         scan = laser.scans(pose, np.zeros(1, dtype=np.int32))[0]
         guidance = finder.step(Pose(*map(float, pose[0])), scan)
         phases.add(finder.phase)
-        if guidance.progress is not PlannerStatus.DRIVING:
+        if guidance.status is not PlannerStatus.DRIVING:
             break
         pose[0] = moved(pose[0], guidance.twist)
         assert float(walls.clearance(pose[:, :2])[0]) >= INFLATION
-    assert guidance.progress is PlannerStatus.ARRIVED
+    assert guidance.status is PlannerStatus.ARRIVED
     assert SearchPhase.BOUNDARY in phases
 
 
