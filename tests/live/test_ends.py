@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -12,7 +13,8 @@ from typing import Any
 import pytest
 
 from onehop.drivers.replay import replay
-from onehop.node.bus import LEASE_MS
+from onehop.mission.processes import free_endpoint
+from onehop.node.bus import LEASE_MS, make_credentials, open_client, open_router
 from onehop.wire.log_reader import LogFile, digest
 from tests.live.mission import DEADLINE_S, Mission, gone
 from tests.onehop.scenes import field, log_of
@@ -121,6 +123,39 @@ def test_a_killed_launcher_leaves_no_file_and_its_folder_free(start: Start, tmp_
     assert not (mission.out / "stderr").exists()
 
 
+SPY = """
+import contextlib, pathlib, sys, threading
+done = threading.Event()
+threading.Thread(target=lambda: (sys.stdin.read(), done.set())).start()
+print("looking", flush=True)
+found = set()
+while not done.is_set():
+    for file in pathlib.Path(sys.argv[1]).iterdir():
+        with contextlib.suppress(OSError):
+            found.add(file.read_text())
+print(*found, end="")
+"""
+
+
+def test_passwords_never_lie_in_a_file_with_a_name(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """However suddenly the world is killed while its bus opens, nobody finds them."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    words = make_credentials(["robot-1"])
+    endpoint = free_endpoint()
+    spy = subprocess.Popen(
+        [sys.executable, "-c", SPY, str(tmp_path)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+    assert spy.stdout is not None
+    assert spy.stdout.readline() == "looking\n"
+    with open_router("m", endpoint, words), open_client("m", endpoint, "robot-1", words["robot-1"]):
+        assert spy.communicate(timeout=DEADLINE_S)[0].strip() == ""
+
+
 def test_a_launcher_that_was_stopped_to_the_end_takes_the_result_from_where_it_lies(
     start: Start, tmp_path: Path
 ) -> None:
@@ -223,7 +258,8 @@ def test_few_descriptors_are_said_before_anything_starts(start: Start) -> None:
 
 
 def test_a_soft_limit_of_descriptors_is_raised(start: Start) -> None:
-    assert start("clock.limit_s=2", shell="ulimit -Sn 20").finish()["ticks"] == 40
+    mission = start("clock.limit_s=1", "team.size=12", "team.spacing=1", shell="ulimit -Sn 20")
+    assert mission.finish()["ticks"] == 20
 
 
 BROKEN = """
