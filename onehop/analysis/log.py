@@ -25,7 +25,7 @@ from onehop.contracts.values import Wire
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import decode
 from onehop.wire.log_reader import LogFile
-from onehop.wire.selection import Selected, one_of, select
+from onehop.wire.selection import Selected, one_of
 
 M = TypeVar("M", bound=Wire)
 
@@ -35,7 +35,8 @@ class Log:
 
     scenario, bundle: what was run. metadata: versions, driver. summary: what `onehop run` printed, None
     if the log ends before the mission did.
-    torn: its recorder was killed. file: the same log, tick by tick.
+    torn: its recorder was killed. flaws: what is wrong with it beyond that, as far as it can be seen
+    without reading all of it (log_reader.py says how far). file: the same log, tick by tick.
     """
 
     def __init__(self, file: LogFile) -> None:
@@ -46,6 +47,7 @@ class Log:
         self.period_ns = self.scenario.clock.period_ns
         self.summary: dict[str, Any] | None = file.summary
         self.torn = file.torn
+        self.flaws = tuple(file.flaws)
         self.file = file
 
     @property
@@ -62,7 +64,7 @@ class Log:
     ) -> Iterator[Selected]:
         """Raw wire messages of bus keys, e.g. "truth", "out/3", "out/" (all robots), within a time."""
         last = None if end_s is None else self.tick_at(end_s)
-        return select(self.path, one_of(*keys), self.period_ns, self.tick_at(start_s), last)
+        return self.file.wire.select(one_of(*keys), self.tick_at(start_s), last)
 
     def truths(self, start_s: float = 0.0, end_s: float | None = None) -> Iterator[tuple[int, Truth]]:
         """(tick, ground truth)."""

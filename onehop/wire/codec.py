@@ -12,6 +12,7 @@ import numpy as np
 
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.errors import DecodeError
+from onehop.contracts.printable import printable
 from onehop.contracts.values import WIRE_VERSION, Wire
 
 M = TypeVar("M", bound=Wire)
@@ -56,13 +57,8 @@ def decode(kind: type[M], data: bytes) -> M:
             message: M = decoder.decode(data)
             return message
     except REFUSALS as error:
-        raise DecodeError(f"{kind.__name__}: {_printable(error)}") from None
+        raise DecodeError(f"{kind.__name__}: {printable(str(error))}") from None
     raise DecodeError(f"{kind.__name__}: {_version_problem(data)}")
-
-
-def _printable(error: Exception) -> str:
-    """The reason in one line, whatever the sender put into the names that it quotes."""
-    return "".join(letter if letter.isprintable() else "?" for letter in str(error))
 
 
 def _version_problem(data: bytes) -> str:
@@ -70,7 +66,7 @@ def _version_problem(data: bytes) -> str:
     try:
         fields = msgspec.msgpack.decode(data)
     except REFUSALS as error:
-        return f"not msgpack: {_printable(error)}"
+        return f"not msgpack: {printable(str(error))}"
     if type(fields) is not dict or "v" not in fields:
         return "no schema version"
     if fields["v"] == WIRE_VERSION and fields["v"] is not True:

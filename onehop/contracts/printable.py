@@ -1,0 +1,37 @@
+"""What others said, as text that a terminal, a page or a figure can show without harm."""
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+LONGEST = 400
+"""Letters of one text that are shown; nobody reads more, and a peer can send megabytes."""
+
+MOST_IDS = 40
+"""Robots of one list that are shown."""
+
+
+def printable(text: str, longest: int = LONGEST) -> str:
+    """The text in one line: "?" for what does not print, "..." for what is too long."""
+    shown = text if len(text) <= longest else text[:longest] + "..."
+    return shown if shown.isprintable() else "".join(c if c.isprintable() else "?" for c in shown)
+
+
+def ids_in_words(robots: Iterable[int], separator: str = " ") -> str:
+    """Ids of robots, as many as anybody reads."""
+    listed = list(robots)
+    more = f"{separator}and {len(listed) - MOST_IDS} more" if len(listed) > MOST_IDS else ""
+    return separator.join(map(str, listed[:MOST_IDS])) + more
+
+
+def as_json(value: Any) -> Any:
+    """A value as JSON can say it: bytes in hexadecimal, numbers that are not finite as text."""
+    if isinstance(value, bytes):
+        return value.hex()
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    if isinstance(value, dict):
+        return {str(key): as_json(inner) for key, inner in value.items()}
+    if isinstance(value, list | tuple):
+        return [as_json(inner) for inner in value]
+    return value if isinstance(value, int | float | str | None) else str(value)
