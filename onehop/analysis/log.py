@@ -11,23 +11,25 @@
 Nothing is held in memory but what was asked for; a stretch of time is found without unpacking the rest.
 """
 
+import math
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, TypeVar
 
-from onehop.analysis.columns import TABLES
+import numpy as np
+
+from onehop.analysis.columns import TABLES, Column
 from onehop.analysis.tables import Table, build
 from onehop.contracts import topics
-from onehop.contracts.errors import InputError
+from onehop.contracts.errors import DecodeError, InputError
 from onehop.contracts.messages import Action, Inbox, Observation, RadioRecord, Truth
 from onehop.contracts.scenario import Scenario
-from onehop.contracts.values import Wire
 from onehop.scenario.bundle import Bundle
-from onehop.wire.codec import decode
-from onehop.wire.log_reader import LogFile
+from onehop.wire.log_reader import LogFile, forged
+from onehop.wire.logged import TickMessage, decoded
 from onehop.wire.selection import Selected, one_of
 
-M = TypeVar("M", bound=Wire)
+M = TypeVar("M", bound=TickMessage)
 
 
 class Log:
@@ -56,7 +58,9 @@ class Log:
         return self.scenario.team.robots
 
     def tick_at(self, time_s: float) -> int:
-        """The tick of a simulated time [s]."""
+        """The tick of a simulated time [s]. Raises InputError for a time that is no finite number."""
+        if not math.isfinite(time_s):
+            raise InputError(f"time {time_s}", "is no moment of a mission", "a number of seconds")
         return round(time_s * 1e9 / self.period_ns)
 
     def messages(
@@ -97,8 +101,13 @@ class Log:
     def _typed(
         self, kind: type[M], key: str, start_s: float, end_s: float | None
     ) -> Iterator[tuple[int, M]]:
-        for tick, _, data in self.messages(key, start_s=start_s, end_s=end_s):
-            yield tick, decode(kind, data)
+        for message in self.messages(key, start_s=start_s, end_s=end_s):
+            try:
+                value = decoded(message)
+            except DecodeError as error:
+                raise forged(self.path, error) from None
+            assert isinstance(value, kind)
+            yield message.tick, value
 
     def table(
         self,
@@ -125,7 +134,34 @@ class Log:
                 )
         stems = sorted({TABLES[name].key for name in names})
         keys = [key for stem in stems for key in _keys(stem, robots)]
-        return build(names, self.messages(*keys, start_s=start_s, end_s=end_s), self.period_ns)
+        return self.build(names, self.messages(*keys, start_s=start_s, end_s=end_s))
+
+    def build(self, names: Iterable[str], messages: Iterable[Selected]) -> dict[str, Table]:
+        """Several tables of messages of this log. Raises LogError for a message that cannot be one."""
+        try:
+            tables = build(names, messages, self.period_ns)
+        except DecodeError as error:
+            raise forged(self.path, error) from None
+        for name, table in tables.items():
+            for column in _OF_THE_TEAM.get(name, ()):
+                self._check_team(name, table[column])
+        return tables
+
+    def _check_team(self, name: str, robots: Column) -> None:
+        strangers = robots[~np.isin(robots, self.robots)]
+        if len(strangers):
+            raise forged(self.path, f"{name} of robot {strangers[0]}, which is not in the team")
+
+
+_OF_THE_TEAM = {
+    "poses": ("robot",),
+    "transmit_requests": ("robot",),
+    "departures": ("robot",),
+    "contacts": ("robot",),
+    "verdicts": ("source",),
+    "receptions": ("source",),
+}
+"""Columns in which world and radio name robots of the team, and nobody else."""
 
 
 def _keys(stem: str, robots: Iterable[int] | None) -> list[str]:

@@ -7,7 +7,7 @@ import msgpack
 import numpy as np
 
 from onehop.contracts.errors import DecodeError
-from onehop.wire.codec import as_map
+from onehop.wire.codec import UNPACK_REFUSALS, as_map
 from robot_agent.core.team.team_messages import (
     Ack,
     Beacon,
@@ -31,7 +31,7 @@ def decoded_fields(data: bytes) -> Any:
     """A wire message as maps and lists, scan and payloads included. Raises DecodeError."""
     try:
         return _decoded(msgpack.unpackb(data))
-    except (ValueError, msgpack.UnpackException) as error:
+    except UNPACK_REFUSALS as error:
         raise DecodeError(f"not msgpack: {error}") from None
 
 

@@ -14,7 +14,7 @@ from matplotlib.patheffects import withStroke
 from onehop.analysis.ground import draw_ground
 from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, INK, robot_colours
-from onehop.analysis.tables import Table, build
+from onehop.analysis.tables import Table
 from onehop.analysis.timeline import LastSeen, departures, describe_fault, leadership
 from onehop.contracts.messages import LeadershipTerm
 from onehop.wire.log_reader import LogFile
@@ -79,7 +79,7 @@ def _tables(log: Log) -> dict[str, Table]:
         for message in log.messages("truth", "out/")
         if message.key == "truth" or message.tick % stride == 0
     )
-    return build(("poses", "status", "departures", "contacts"), chosen, log.period_ns)
+    return log.build(("poses", "status", "departures", "contacts"), chosen)
 
 
 def _draw_path(axes: Axes, own: Table, colour: str) -> None:

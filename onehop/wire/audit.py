@@ -6,44 +6,50 @@ of it reads it through here, and learns what is missing, too much or not what wa
 
 from collections.abc import Iterator
 
+from onehop.contracts.printable import printable
 from onehop.wire.coverage import TickRow
 from onehop.wire.journal import Digest
 from onehop.wire.log_reader import LogFile, LoggedTick
 
 
 class Audit:
-    """Reads a log from its first tick to its last.
-
-    flaws: what is wrong with the log, in sentences; complete when ticks() has come to its end.
-    """
+    """Reads a log from its first tick to its last."""
 
     def __init__(self, log: LogFile) -> None:
         self._log = log
-        self.flaws = list(log.unreadable)
+        self._row = TickRow(None if log.summary is None else log.summary["ticks"])
+        self._flaws = list(log.unreadable)
+
+    @property
+    def flaws(self) -> list[str]:
+        """What is wrong with what has been read so far, in sentences."""
+        return [*self._flaws, *self._row.flaws]
 
     def ticks(self) -> Iterator[LoggedTick]:
-        """Every tick. Raises LogError where the log is damaged."""
-        summary = self._log.summary
-        row = TickRow(None if summary is None else summary["ticks"])
-        sha = Digest()
+        """Every tick; at the end, their number and digest are checked. Raises LogError."""
+        sha, row = Digest(), self._row
         for tick in self._log.ticks():
             self._check_keys(tick)
             sha.add(tick.tick, tick.messages)
             row.take(tick.tick, tick.tick)
             yield tick
         row.end()
-        self.flaws += row.flaws
         if not row.expected:
-            self.flaws.append("it has not one tick")
-        elif not self.flaws and summary is not None and summary["digest"] not in (None, sha.hex()):
-            self.flaws.append(
-                f"its messages are not those of the mission: their digest is {sha.hex()}, "
-                f"that of the mission was {summary['digest']}"
+            self._flaws.append("it has not one tick")
+        elif not self.flaws:
+            self._compare(sha.hex())
+
+    def _compare(self, found: str) -> None:
+        summary = self._log.summary
+        if summary is not None and summary["digest"] not in (None, found):
+            self._flaws.append(
+                f"its messages are not those of the mission: their digest is {found}, "
+                f"that of the mission was {printable(summary['digest'], len(found))}"
             )
 
     def _check_keys(self, tick: LoggedTick) -> None:
         if len(dict(tick.messages)) < len(tick.messages):
-            self.flaws.append(f"tick {tick.tick} has two messages of one channel")
+            self._flaws.append(f"tick {tick.tick} has two messages of one channel")
 
 
 def audit(log: LogFile) -> list[str]:

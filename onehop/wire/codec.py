@@ -7,6 +7,7 @@ is due. Arrays of laser ranges travel as little-endian float32 bytes.
 
 from typing import Any, TypeVar
 
+import msgpack
 import msgspec
 import numpy as np
 
@@ -36,6 +37,9 @@ def _from_wire(_: type, value: Any) -> Ranges:
 
 REFUSALS = (msgspec.MsgspecError, UnicodeDecodeError, RecursionError)
 """What msgspec raises for bytes that are not the message they should be."""
+
+UNPACK_REFUSALS = (ValueError, TypeError, msgpack.UnpackException, RecursionError)
+"""What msgpack raises for bytes that are not msgpack, or not for Python: keys that are lists."""
 
 _ENCODER = msgspec.msgpack.Encoder(enc_hook=_to_wire)
 _DECODERS: dict[type, msgspec.msgpack.Decoder[Any]] = {}

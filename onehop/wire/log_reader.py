@@ -2,8 +2,9 @@
 
 Opening a log reads its metadata, its attachments and the heads of its chunks, but no message. It makes
 sure that it is a log of ours with all that a mission is made from, and says in `flaws` what can be seen
-from there: ticks that are missing or not in their order, records that are damaged. Whatever is read after
-that is checked as it is read (selection.py); that it is all that was said, audit.py checks with the digest.
+from there: ticks that are missing or not in their order, records that are damaged. Whatever is read
+after that is checked as it is read (selection.py); whether it is all that was said and as it was said,
+audit.py finds by its digest.
 """
 
 from collections.abc import Iterator
@@ -108,6 +109,11 @@ class LogFile:
 def _in_order(tick: LoggedTick) -> LoggedTick:
     tick.messages.sort(key=lambda message: canonical_rank(message[0]))
     return tick
+
+
+def forged(path: Path, why: object) -> LogError:
+    """The error of a log with a message that cannot have been recorded."""
+    return LogError(str(path), str(why), "it is not as it was recorded; use a copy of it")
 
 
 def digest(log: LogFile) -> str:

@@ -1,8 +1,8 @@
 """The records of an MCAP file, without trust in what they say of themselves.
 
-The layout is that of the MCAP specification, version 0: after eight magic bytes records of opcode, length
-and content; messages lie in chunks (plain, zstd or lz4) or between the other records. Whatever a file
-says, no record is read beyond the file's end and no chunk takes more memory than MAX_CHUNK_BYTES.
+The layout is that of the MCAP specification, version 0: after eight magic bytes records of opcode,
+length and content; messages lie in chunks (plain, zstd or lz4) or between the other records. Whatever a
+file says, no record is read beyond the file's end and no chunk takes more memory than MAX_CHUNK_BYTES.
 """
 
 import struct
@@ -196,30 +196,31 @@ def topic_of(content: bytes) -> tuple[int, str]:
 
 def channel(content: bytes) -> Channel:
     """Raises RecordError."""
-    return _parsed(Channel.read, content)
+    return _parsed(Channel, content)
 
 
 def schema(content: bytes) -> Schema:
     """Raises RecordError."""
-    return _parsed(Schema.read, content)
+    return _parsed(Schema, content)
 
 
 def metadata(content: bytes) -> Metadata:
     """Raises RecordError."""
-    return _parsed(Metadata.read, content)
+    return _parsed(Metadata, content)
 
 
 def attachment(content: bytes) -> Attachment:
     """Raises RecordError, also when its checksum is wrong."""
-    found = _parsed(Attachment.read, content)
+    found = _parsed(Attachment, content)
     crc = int.from_bytes(content[-4:], "little")
     if crc and zlib.crc32(content[:-4]) != crc:
-        raise RecordError(f"the checksum of attachment {found.name[:40]!r} is wrong")
+        raise RecordError(f"the checksum of attachment {printable(found.name, 60)!r} is wrong")
     return found
 
 
-def _parsed(read: Callable[[ReadDataStream], R], content: bytes) -> R:
+def _parsed(kind: type[R], content: bytes) -> R:
     try:
-        return read(ReadDataStream(BytesIO(content)))
+        found: R = kind.read(ReadDataStream(BytesIO(content)))  # type: ignore[attr-defined]
     except _NOT_PARSABLE as error:
         raise RecordError(f"cannot be read ({printable(str(error))})") from None
+    return found

@@ -100,8 +100,9 @@ class _Reader:
 
     def learn(self, channel: int, topic: str) -> None:
         """The topic of a channel: always the same one, and of wire channels one that a mission has."""
-        if self._topics.setdefault(channel, topic) != topic:
-            raise RecordError(f"channel {channel} is {_quoted(self._topics[channel])} and {_quoted(topic)}")
+        before = self._topics.setdefault(channel, topic)
+        if before != topic:
+            raise RecordError(f"channel {channel} is {_quoted(before)} and {_quoted(topic)}")
         key = topic.removeprefix(WIRE)
         if not topic.startswith(WIRE):
             return

@@ -11,8 +11,7 @@ from typing import Annotated, Any, Literal, NamedTuple
 import msgspec
 
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import LeadershipTerm, Lost
-from onehop.contracts.messages import Outcome
+from onehop.contracts.messages import LeadershipTerm, Lost, Outcome
 from onehop.contracts.printable import printable
 from onehop.wire.codec import REFUSALS, as_map
 
