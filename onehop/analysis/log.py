@@ -14,7 +14,7 @@ Nothing is held in memory but what was asked for; a stretch of time is found wit
 import math
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
@@ -26,10 +26,8 @@ from onehop.contracts.messages import Action, Inbox, Observation, RadioRecord, T
 from onehop.contracts.scenario import Scenario
 from onehop.scenario.bundle import Bundle
 from onehop.wire.log_reader import LogFile, forged
-from onehop.wire.logged import TickMessage, decoded
+from onehop.wire.logged import M, value_of
 from onehop.wire.selection import Selected, one_of
-
-M = TypeVar("M", bound=TickMessage)
 
 
 class Log:
@@ -103,10 +101,9 @@ class Log:
     ) -> Iterator[tuple[int, M]]:
         for message in self.messages(key, start_s=start_s, end_s=end_s):
             try:
-                value = decoded(message)
+                value = value_of(kind, message)
             except DecodeError as error:
                 raise forged(self.path, error) from None
-            assert isinstance(value, kind)
             yield message.tick, value
 
     def table(

@@ -6,7 +6,7 @@ from typing import Any
 from onehop.commands.logs import check_moment, open_with_warning, warn_of_flaws
 from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
-from onehop.contracts.printable import as_json, printable
+from onehop.contracts.printable import json_value, printable
 from onehop.drivers.replay import Divergence, Report
 from onehop.drivers.replay import replay as re_execute
 from onehop.scenario.bundle import changed
@@ -75,8 +75,8 @@ def _as_json(report: Report) -> dict[str, Any]:
             "robot": first.robot,
             "channel": first.channel,
             "field": first.field,
-            "recorded": as_json(first.recorded),
-            "replayed": as_json(first.replayed),
+            "recorded": json_value(first.recorded),
+            "replayed": json_value(first.replayed),
         },
         "per_channel": report.per_channel,
         "flaws": report.flaws,
@@ -103,6 +103,6 @@ def _sentence(first: Divergence, period: float) -> str:
     if not first.field:
         return f"{where}: fails on what is recorded, {printable(str(first.replayed))}"
     return (
-        f"{where}, field {printable(first.field)}: recorded {as_json(first.recorded)!r:.80}, "
-        f"replayed {as_json(first.replayed)!r:.80}"
+        f"{where}, field {printable(first.field)}: recorded {json_value(first.recorded)!r:.80}, "
+        f"replayed {json_value(first.replayed)!r:.80}"
     )

@@ -24,14 +24,14 @@ def ids_in_words(robots: Iterable[int], separator: str = " ") -> str:
     return separator.join(map(str, listed[:MOST_IDS])) + more
 
 
-def as_json(value: Any) -> Any:
+def json_value(value: Any) -> Any:
     """A value as JSON can say it: bytes in hexadecimal, numbers that are not finite as text."""
     if isinstance(value, bytes):
         return value.hex()
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     if isinstance(value, dict):
-        return {str(key): as_json(inner) for key, inner in value.items()}
+        return {str(key): json_value(inner) for key, inner in value.items()}
     if isinstance(value, list | tuple):
-        return [as_json(inner) for inner in value]
+        return [json_value(inner) for inner in value]
     return value if isinstance(value, int | float | str | None) else str(value)

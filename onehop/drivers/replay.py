@@ -8,7 +8,7 @@ re-execution ends where a tick is missing.
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any
 
 import msgpack
 
@@ -24,13 +24,11 @@ from onehop.wire.codec import UNPACK_REFUSALS, decode, encode
 from onehop.wire.difference import first_difference
 from onehop.wire.journal import canonical_rank
 from onehop.wire.log_reader import LogFile, LoggedTick, forged
-from onehop.wire.logged import TickMessage, decoded
+from onehop.wire.logged import M, value_of
 from onehop.wire.selection import Selected
 from radio_proxy.core.radio import Radio
 from robot_agent.core.robot import Robot
 from world_server.core.world import World
-
-M = TypeVar("M", bound=TickMessage)
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,9 +120,7 @@ class _Comparison:
     everything: whether they are all that speak in a mission.
     """
 
-    def __init__(
-        self, report: Report, players: dict[str, Player], everything: bool, torn: bool
-    ) -> None:
+    def __init__(self, report: Report, players: dict[str, Player], everything: bool, torn: bool) -> None:
         self._report = report
         self._players = players
         self._everything = everything
@@ -173,9 +169,7 @@ class _Comparison:
         truth = _value(Truth, tick, topics.TRUTH)
         gone = set() if truth is None else {one.robot for one in truth.departures}
         self._report_all(
-            one
-            for one in self._unrecorded
-            if not (one.channel.startswith(_OUT) and one.robot in gone)
+            one for one in self._unrecorded if not (one.channel.startswith(_OUT) and one.robot in gone)
         )
         self._unrecorded.clear()
 
@@ -209,11 +203,7 @@ def _divergence(tick: int, key: str, recorded: bytes, replayed: bytes) -> Diverg
 def _value(kind: type[M], tick: LoggedTick, key: str) -> M | None:
     """The value of a message of a tick, None when there is none. Raises DecodeError."""
     data = tick.get(key)
-    if data is None:
-        return None
-    value = decoded(Selected(tick.tick, key, data))
-    assert isinstance(value, kind)
-    return value
+    return None if data is None else value_of(kind, Selected(tick.tick, key, data))
 
 
 class _RobotPlayer:

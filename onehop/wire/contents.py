@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
 from mcap.opcode import Opcode
+from mcap.records import Channel, Schema
 
 from onehop.contracts.errors import LogError
 from onehop.wire.records import (
@@ -18,11 +19,12 @@ from onehop.wire.records import (
     Record,
     RecordError,
     attachment,
+    channel,
     chunk_head,
     content_of,
     metadata,
     read_exactly,
-    topic_of,
+    schema,
     unpacked,
     walk,
 )
@@ -32,6 +34,10 @@ STRETCH_BYTES = 1 << 20
 
 _BETWEEN = (Opcode.MESSAGE, Opcode.CHANNEL, Opcode.SCHEMA)
 """Records that lie in chunks, or without chunks between the others."""
+
+
+_WHOLE = (Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA, Opcode.ATTACHMENT)
+"""Records that are read as a whole; schemas and channels among them are those of the summary."""
 
 
 class Stretch(NamedTuple):
@@ -51,7 +57,8 @@ class Stretch(NamedTuple):
 class Contents:
     """One log file. metadata, attachments: by name; of several of a name the last counts.
 
-    channels: topics by id as the summary at the end lists them; none in a torn log.
+    schemas, channels: as the summary at the end lists them; none in a torn log. apart: metadata and
+    attachments as records. end: the byte behind the last record.
     torn: the file ends before its footer, since its recorder was killed.
     broken: where no record is though the file goes on, and why. unreadable: metadata, attachments and
     heads of chunks that are damaged.
@@ -60,7 +67,10 @@ class Contents:
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
     attachments: dict[str, bytes] = field(default_factory=dict)
     stretches: list[Stretch] = field(default_factory=list)
-    channels: dict[int, str] = field(default_factory=dict)
+    schemas: list[Schema] = field(default_factory=list)
+    channels: list[Channel] = field(default_factory=list)
+    apart: list[Record] = field(default_factory=list)
+    end: int = 0
     torn: bool = True
     broken: RecordError | None = None
     unreadable: list[RecordError] = field(default_factory=list)
@@ -72,13 +82,13 @@ def damaged(path: Path, at: int, why: str) -> LogError:
     return LogError(str(path), f"damaged in the record at byte {at} ({why})", remedy)
 
 
-def read_contents(path: Path) -> Contents:
-    """Raises LogError for what is no MCAP file."""
+def read_contents(path: Path, start: int = len(MAGIC)) -> Contents:
+    """The contents from a record on, by default all. Raises LogError for what is no MCAP file."""
     try:
         with path.open("rb") as stream:
             if stream.read(len(MAGIC)) != MAGIC:
                 raise LogError(str(path), "not an MCAP file", "give a .mcap log")
-            return _Pass(stream).contents()
+            return _Pass(stream).contents(start)
     except OSError as error:
         why = error.strerror or "cannot be read"
         raise LogError(str(path), why, "name a log that exists") from None
@@ -99,15 +109,16 @@ class _Pass:
         self._in_summary = False
         self._open: Stretch | None = None
 
-    def contents(self) -> Contents:
+    def contents(self, start: int) -> Contents:
         found = self._found
+        found.end = start
         try:
-            for record in walk(self._stream):
+            for record in walk(self._stream, start):
                 try:
                     self._take(record)
                 except RecordError as error:
                     found.unreadable.append(RecordError(error.why, record.at))
-                found.torn = record.opcode != Opcode.FOOTER
+                found.end, found.torn = record.end, record.opcode != Opcode.FOOTER
         except RecordError as error:
             found.broken, found.torn = error, False
         self._close_stretch()
@@ -123,21 +134,24 @@ class _Pass:
             head = chunk_head(self._stream.read(min(record.length, CHUNK_HEAD_BYTES)))
             place = record.start, record.length
             self._found.stretches.append(Stretch(*place, head.first_ns, head.last_ns, is_chunk=True))
-        elif opcode in (Opcode.CHANNEL, Opcode.METADATA, Opcode.ATTACHMENT):
-            self._take_whole(opcode, content_of(self._stream, record))
+        elif opcode in _WHOLE:
+            self._take_whole(record, content_of(self._stream, record))
         self._in_summary |= opcode == Opcode.DATA_END
 
-    def _take_whole(self, opcode: int, content: bytes) -> None:
-        found = self._found
-        if opcode == Opcode.CHANNEL:
-            channel, topic = topic_of(content)
-            found.channels[channel] = topic
+    def _take_whole(self, record: Record, content: bytes) -> None:
+        found, opcode = self._found, record.opcode
+        if opcode == Opcode.SCHEMA:
+            found.schemas.append(schema(content))
+        elif opcode == Opcode.CHANNEL:
+            found.channels.append(channel(content))
         elif opcode == Opcode.METADATA:
             about = metadata(content)
             found.metadata[about.name] = about.metadata
+            found.apart.append(record)
         else:
             file = attachment(content)
             found.attachments[file.name] = file.data
+            found.apart.append(record)
 
     def _extend_stretch(self, record: Record) -> None:
         """A record that lies between the others goes to the stretch before it, if that is not long."""

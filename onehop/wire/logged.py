@@ -1,6 +1,6 @@
 """The messages of a log as the values that they are."""
 
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
@@ -9,6 +9,8 @@ from onehop.wire.codec import decode
 from onehop.wire.selection import Selected
 
 TickMessage: TypeAlias = Truth | RadioRecord | Inbox | Observation | Action
+
+M = TypeVar("M", bound=TickMessage)
 
 _KINDS: dict[str, type[TickMessage]] = {
     topics.TRUTH: Truth,
@@ -28,4 +30,11 @@ def decoded(message: Selected) -> TickMessage:
         raise DecodeError(f"tick {tick}, {topics.wire(key)}: {error}") from None
     if value.tick != tick:
         raise DecodeError(f"tick {tick}, {topics.wire(key)}: it is of tick {value.tick}")
+    return value
+
+
+def value_of(kind: type[M], message: Selected) -> M:
+    """The value of a message of a key that stands for this kind. Raises DecodeError."""
+    value = decoded(message)
+    assert isinstance(value, kind)
     return value

@@ -16,7 +16,7 @@ import zstandard
 from mcap.data_stream import ReadDataStream
 from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import Attachment, Channel, Metadata, Schema
+from mcap.records import Attachment, Channel, Message, Metadata, Schema
 
 from onehop.contracts.printable import printable
 
@@ -188,10 +188,16 @@ def records_in(data: bytes) -> Iterator[tuple[int, int, int]]:
 def topic_of(content: bytes) -> tuple[int, str]:
     """Id and topic of a channel. Raises RecordError."""
     try:
-        channel, _, length = _CHANNEL.unpack_from(content)
-        return channel, content[_CHANNEL.size : _CHANNEL.size + length].decode()
+        number, _, length = _CHANNEL.unpack_from(content)
+        return number, content[_CHANNEL.size : _CHANNEL.size + length].decode()
     except (struct.error, UnicodeDecodeError):
         raise RecordError("a channel that cannot be read") from None
+
+
+def message(content: bytes) -> Message:
+    """From the content of a record that records_in gave."""
+    number, sequence, log_ns, publish_ns = MESSAGE.unpack_from(content)
+    return Message(number, log_ns, content[MESSAGE.size :], publish_ns, sequence)
 
 
 def channel(content: bytes) -> Channel:

@@ -71,8 +71,8 @@ class WireMessages:
         at = 0
         with self.path.open("rb") as stream:
             try:
-                for channel, topic in channels.items():
-                    reader.learn(channel, topic)
+                for channel in channels:
+                    reader.learn(channel.id, channel.topic)
                 for stretch in stretches:
                     if stretch.first_ns > end_ns or (channels and stretch.last_ns < begin_ns):
                         continue

@@ -69,7 +69,7 @@ def test_diff_of_two_logs_is_1_and_names_the_end_of_the_shorter(
 ) -> None:
     answer = onehop("diff", recorded, torn, "--json")
     assert answer.status == 1
-    assert answer.json["first"]["field"] == "end of the log"
+    assert (answer.json["first"]["field"], answer.json["first"]["b"]) == ("tick", None)
 
 
 def test_a_torn_log_is_read_with_one_line_of_warning(onehop: Any, torn: Path) -> None:

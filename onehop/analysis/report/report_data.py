@@ -61,7 +61,7 @@ def gather(log: Log) -> ReportData:
         terms=led.terms,
         main_terms=led.main,
         faults=fault_spans(tables, period_s),
-        traces=list(join(tables["verdicts"], tables["transmit_requests"])),
+        traces=list(join(tables["verdicts"], tables["transmit_requests"], log.period_ns)),
         period_s=period_s,
         end_s=float(poses["time_s"][-1]) if len(poses) else 0.0,
     )
