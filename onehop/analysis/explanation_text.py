@@ -8,7 +8,7 @@ from onehop.analysis.explanation import Explanation
 from onehop.analysis.message_traces import MessageTrace
 from onehop.analysis.payloads import summary_of
 from onehop.contracts.messages import DeliveryStatus
-from onehop.contracts.printable import ids_in_words, printable
+from onehop.contracts.printable import ids_in_words, in_words, printable
 
 MOST_LINES = 200
 """Events and messages that are listed, the last ones: a robot can send thousands in a second."""
@@ -106,10 +106,7 @@ def _gain(one: Explanation) -> Iterator[str]:
 
 def _said(data: dict[str, Any], key: str) -> str:
     """What a note says under a key: a robot can leave it out, or put anything there."""
-    value = data.get(key, "?")
-    if isinstance(value, tuple):
-        return ids_in_words(value)
-    return printable(f"{value:z.2f}" if isinstance(value, float) else str(value))
+    return in_words(data.get(key, "?"))
 
 
 def _event(event: dict[str, Any]) -> str:

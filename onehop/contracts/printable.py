@@ -24,6 +24,13 @@ def ids_in_words(robots: Iterable[int], separator: str = " ") -> str:
     return separator.join(map(str, listed[:MOST_IDS])) + more
 
 
+def in_words(value: Any) -> str:
+    """What a note says under a key: a number, a text or ids of robots."""
+    if isinstance(value, list | tuple):
+        return ids_in_words(value, ", ")
+    return f"{value:z.2f}" if isinstance(value, float) else printable(str(value))
+
+
 def json_value(value: Any) -> Any:
     """A value as JSON can say it: bytes in hexadecimal, numbers that are not finite as text."""
     if isinstance(value, bytes):
