@@ -172,8 +172,9 @@ def _draw_departure(axes: Axes, departure: LastSeen, colour: str) -> None:
     axes.plot(*spot, marker="o", markersize=15, color="white", markeredgecolor=colour, zorder=7)
     axes.plot(*spot, marker="x", markersize=9, color=BAD, markeredgewidth=2.8, zorder=7.5)
     axes.annotate(
-        f"{departure.robot} {printable(departure.why, 60)}, {departure.at_s:.0f} s", spot, textcoords="offset points",
-        xytext=(12, -4), fontsize=9, fontweight="bold", color=BAD, zorder=9, path_effects=_HALO,
+        f"{departure.robot} {printable(departure.why, 60)}, {departure.at_s:.0f} s", spot,
+        textcoords="offset points", xytext=(12, -4), fontsize=9, fontweight="bold", color=BAD, zorder=9,
+        path_effects=_HALO,
     )  # fmt: skip
 
 
