@@ -64,7 +64,7 @@ class LogCopy:
                     self._take_attachment(attachment(content_of(stream, record)))
             except RecordError:
                 continue
-        self._settle()
+        self.settle()
 
     def _take_metadata(self, about: Metadata) -> None:
         if about.name == OUTCOME:
@@ -77,8 +77,8 @@ class LogCopy:
             file.create_time, file.log_time, file.name, file.media_type, file.data
         )
 
-    def _settle(self) -> None:
-        """Write out what the writer holds back, so that nothing that follows can overtake it."""
+    def settle(self) -> None:
+        """End the chunk: nothing that follows can overtake it, and its head says which ticks it has."""
         self.writer.flush()  # type: ignore[no-untyped-call]
 
     def take(self, record: Schema | Channel) -> None:
@@ -107,7 +107,7 @@ class LogCopy:
 
     def finish(self) -> None:
         """Write the outcome, summary and index; the file takes its name."""
-        self._settle()
+        self.settle()
         for about in self._outcome:
             self.writer.add_metadata(about.name, about.metadata)
         self.writer.finish()  # type: ignore[no-untyped-call]

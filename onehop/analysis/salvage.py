@@ -131,6 +131,8 @@ class _Rescue:
         if one.wire and not (self._is_sound or _is_whole(one, self._pending.get(tick + 1), is_last)):
             self.given_up += len(one.messages)
             return
+        if one.wire and tick != self.last_tick + 1:
+            self._copy.settle()
         for message in one.messages:
             self._copy.take_message(message)
         self.messages += len(one.messages)

@@ -60,8 +60,8 @@ class Contents:
     schemas, channels: as the summary at the end lists them; none in a torn log. apart: metadata and
     attachments as records. end: the byte behind the last record.
     torn: the file ends before its footer, since its recorder was killed.
-    broken: where no record is though the file goes on, and why. unreadable: metadata, attachments and
-    heads of chunks that are damaged.
+    broken: where the chain of records breaks though the file goes on, and why. unreadable: metadata and
+    attachments that are damaged.
     """
 
     metadata: dict[str, dict[str, str]] = field(default_factory=dict)
@@ -117,6 +117,8 @@ class _Pass:
                 try:
                     self._take(record)
                 except RecordError as error:
+                    if record.opcode == Opcode.CHUNK:
+                        raise RecordError(error.why, record.at) from None
                     found.unreadable.append(RecordError(error.why, record.at))
                 found.end, found.torn = record.end, record.opcode != Opcode.FOOTER
         except RecordError as error:
@@ -131,7 +133,7 @@ class _Pass:
             return
         self._close_stretch()
         if opcode == Opcode.CHUNK:
-            head = chunk_head(self._stream.read(min(record.length, CHUNK_HEAD_BYTES)))
+            head = chunk_head(self._stream.read(min(record.length, CHUNK_HEAD_BYTES)), record.length)
             place = record.start, record.length
             self._found.stretches.append(Stretch(*place, head.first_ns, head.last_ns, is_chunk=True))
         elif opcode in _WHOLE:

@@ -37,6 +37,9 @@ _CHUNK = struct.Struct("<QQQII")
 CHUNK_HEAD_BYTES = _CHUNK.size + 32
 """Enough of a chunk's content to read its head [B]."""
 
+_PACKED = struct.Struct("<Q")
+"""Length [B] of the packed records, between the head of a chunk and them."""
+
 _CHANNEL = struct.Struct("<HHI")
 """Head of a channel: id, schema id, length of the topic; the topic follows."""
 
@@ -71,13 +74,17 @@ class Record(NamedTuple):
 
 
 class ChunkHead(NamedTuple):
-    """What a chunk says of itself. size: unpacked [B]. crc: 0 when there is none."""
+    """What a chunk says of itself. size: unpacked [B]. crc: 0 when there is none.
+
+    start: where in its content the packed records begin.
+    """
 
     first_ns: int
     last_ns: int
     size: int
     crc: int
     compression: bytes
+    start: int
 
 
 def walk(stream: BinaryIO, start: int = len(MAGIC)) -> Iterator[Record]:
@@ -122,24 +129,32 @@ def read_exactly(stream: BinaryIO, at: int, length: int) -> bytes:
     return content
 
 
-def chunk_head(content: bytes) -> ChunkHead:
-    """The head of a chunk, from its content or the beginning of it. Raises RecordError."""
-    if len(content) < _CHUNK.size:
-        raise RecordError("a chunk without a head")
-    first_ns, last_ns, size, crc, length = _CHUNK.unpack_from(content)
-    return ChunkHead(first_ns, last_ns, size, crc, content[_CHUNK.size : _CHUNK.size + length])
+def chunk_head(content: bytes, length: int) -> ChunkHead:
+    """The head of a chunk, from the beginning of its content, which has `length` bytes.
+
+    Raises RecordError when that is not the length that the head says.
+    """
+    try:
+        first_ns, last_ns, size, crc, name = _CHUNK.unpack_from(content)
+        compression = content[_CHUNK.size : _CHUNK.size + name]
+        start = _CHUNK.size + name + _PACKED.size
+        (packed,) = _PACKED.unpack_from(content, start - _PACKED.size)
+    except struct.error:
+        raise RecordError("a chunk without a head") from None
+    if start + packed != length:
+        raise RecordError("a chunk of another length than its head says")
+    return ChunkHead(first_ns, last_ns, size, crc, compression, start)
 
 
 def unpacked(content: bytes) -> bytes:
     """The records in a chunk. Raises RecordError when they are not what was written."""
-    head = chunk_head(content)
-    packed = content[_CHUNK.size + len(head.compression) + 8 :]
+    head = chunk_head(content, len(content))
     if head.size > MAX_CHUNK_BYTES:
         raise RecordError(f"a chunk of {head.size} bytes; at most {MAX_CHUNK_BYTES} are read")
     unpack = _UNPACKERS.get(head.compression)
     if unpack is None:
         raise RecordError(f"compression {head.compression[:20]!r}; zstd, lz4 or none is read")
-    data = unpack(packed, head.size)
+    data = unpack(content[head.start :], head.size)
     if len(data) != head.size or (head.crc and zlib.crc32(data) != head.crc):
         raise RecordError("its checksum is wrong")
     return data

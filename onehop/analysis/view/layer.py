@@ -40,11 +40,16 @@ class _WireChannels:
     """Copies the wire messages of each tick."""
 
     def __init__(self, copy: LogCopy, period_ns: int) -> None:
+        self._copy = copy
         self._writer = copy.writer
         self._period_ns = period_ns
         self._channels: dict[str, int] = {}
+        self._last_tick = -1
 
     def add(self, tick: LoggedTick) -> None:
+        if tick.tick != self._last_tick + 1:
+            self._copy.settle()
+        self._last_tick = tick.tick
         stamp = LOG_EPOCH_NS + tick.tick * self._period_ns
         for key, data in tick.messages:
             channel = self._channels.get(key)
