@@ -6,7 +6,7 @@ hidden, every output is the same, byte for byte. State grows from the start of t
 re-execution ends where a tick is missing.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -101,6 +101,7 @@ def replay(
     comparison = _Comparison(report, players, everything=parts and robots is None, torn=log.torn)
     try:
         for number, tick in enumerate(audit.ticks()):
+            comparison.judge_before(tick)
             if tick.tick != number or (last_tick is not None and tick.tick > last_tick):
                 break
             if not comparison.on_tick(tick, counts=tick.tick >= first_tick):
@@ -125,11 +126,10 @@ class _Comparison:
         self._players = players
         self._everything = everything
         self._torn = torn
-        self._unrecorded: list[Divergence] = []
+        self._unjudged: list[Divergence] = []
 
     def on_tick(self, tick: LoggedTick, counts: bool) -> bool:
         """Compare a tick, if it counts; False when a component failed, so that nothing can follow."""
-        self._judge_unrecorded(tick)
         said: dict[str, bytes] = {}
         for key, player in self._players.items():
             try:
@@ -142,40 +142,46 @@ class _Comparison:
                 return False
         if counts:
             self._report.ticks += 1
-            self._compare(tick.tick, dict(tick.messages), said)
+            self._unjudged = list(self._differences(tick.tick, dict(tick.messages), said))
         return True
 
-    def on_end(self) -> None:
-        """The log ends here. What a last tick lacks is lost with the tear, or was never said."""
-        if not self._torn:
-            self._report_all(one for one in self._unrecorded if not one.channel.startswith(_OUT))
-
-    def _compare(self, tick: int, recorded: dict[str, bytes], said: dict[str, bytes]) -> None:
+    def _differences(
+        self, tick: int, recorded: dict[str, bytes], said: dict[str, bytes]
+    ) -> Iterator[Divergence]:
         for key in sorted({*recorded, *said}, key=canonical_rank):
             if key not in said:
                 if self._everything or key in self._players:
-                    self._report.add(_only(tick, key, "present", None))
+                    yield _only(tick, key, "present", None)
             elif key not in recorded:
-                self._unrecorded.append(_only(tick, key, None, "present"))
+                yield _only(tick, key, None, "present")
             else:
                 self._report.compared += 1
                 if recorded[key] != said[key]:
-                    self._report.add(_divergence(tick, key, recorded[key], said[key]))
+                    yield _divergence(tick, key, recorded[key], said[key])
 
-    def _judge_unrecorded(self, tick: LoggedTick) -> None:
-        """What the tick before lacks. A robot that left with this tick died before it could act."""
-        if not self._unrecorded:
+    def judge_before(self, tick: LoggedTick) -> None:
+        """Report the differences of the tick before this one.
+
+        A robot that left with this tick died before it could act, and its action is not missing.
+        """
+        if not self._unjudged:
             return
         truth = _value(Truth, tick, topics.TRUTH)
         gone = set() if truth is None else {one.robot for one in truth.departures}
-        self._report_all(
-            one for one in self._unrecorded if not (one.channel.startswith(_OUT) and one.robot in gone)
-        )
-        self._unrecorded.clear()
+        for one in self._unjudged:
+            if not (_is_missing(one) and one.channel.startswith(_OUT) and one.robot in gone):
+                self._report.add(one)
+        self._unjudged = []
 
-    def _report_all(self, divergences: Iterable[Divergence]) -> None:
-        for divergence in divergences:
-            self._report.add(divergence)
+    def on_end(self) -> None:
+        """The log ends here. What its last tick lacks is lost with the tear, or was never said."""
+        for one in self._unjudged:
+            if not (_is_missing(one) and (self._torn or one.channel.startswith(_OUT))):
+                self._report.add(one)
+
+
+def _is_missing(divergence: Divergence) -> bool:
+    return divergence.field == "message" and divergence.recorded is None
 
 
 _OUT = topics.wire(topics.out(""))
