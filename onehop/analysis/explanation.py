@@ -150,7 +150,7 @@ def _notes(notes: Table) -> list[tuple[str, dict[str, Any]]]:
 
 def _since(status: Table, name: str) -> Since:
     column = status[name]
-    other = np.flatnonzero(column != column[-1])
+    other = np.flatnonzero(column[:-1] != column[-1])
     row = int(other[-1]) + 1 if len(other) else 0
     return Since(column[-1].item(), float(status["time_s"][row]))
 

@@ -6,6 +6,8 @@ import json
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, GOOD
 from onehop.analysis.report.narrative import NarrativeEvent, narrative, summary_sentence
@@ -57,9 +59,10 @@ def write_report(log: Log, folder: Path) -> Written:
     """Write report.html and the figures into a folder. Raises LogError."""
     folder.mkdir(parents=True, exist_ok=True)
     report = gather(log)
-    pictures = draw_pictures(report, folder)
     page = folder / "report.html"
-    page.write_text(_page(report, pictures), encoding="utf-8")
+    with np.errstate(over="ignore", invalid="ignore"):  # a robot may have said numbers beyond all sums
+        pictures = draw_pictures(report, folder)
+        page.write_text(_page(report, pictures), encoding="utf-8")
     return Written(page, tuple(picture.path for picture in pictures), report.flaws)
 
 
