@@ -18,7 +18,7 @@ from typer import Argument, Option
 from onehop.commands import numbers
 from onehop.commands.numbers import within
 from onehop.contracts.errors import OnehopError
-from onehop.contracts.plain_text import plain
+from onehop.contracts.printable import printable
 from onehop.mission.stops import Stopped, raise_when_asked_to_end
 from onehop.node.own_settings import keep_to_own_settings
 
@@ -339,7 +339,7 @@ def main() -> NoReturn:
             raise
         line, status = told
         if line:
-            print(f"onehop: {plain(line)}", file=sys.stderr)
+            print(f"onehop: {printable(line)}", file=sys.stderr)
     sys.exit(status)
 
 

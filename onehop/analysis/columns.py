@@ -6,20 +6,20 @@ its test follow from it.
 
 from collections.abc import Callable, Sequence
 from functools import partial
-from operator import itemgetter
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
+from onehop.contracts.errors import DecodeError
+from onehop.contracts.messages import RadioRecord, Truth
+
 Column = npt.NDArray[Any]
 """One value a row."""
 
-Part = dict[str, Any]
-"""The map in a message that one row is made from."""
-
-Parts = Callable[[dict[str, Any]], Sequence[Part]]
-"""Takes a message, gives the part of each row."""
+Parts = Callable[[Any], Sequence[Any]]
+"""Takes a message, gives the part of it from which each row is made."""
 
 BUS_KEY = "the bus key"
 """Place of the id of the robot whose message it is: in the key, not in the message."""
@@ -36,6 +36,17 @@ def _array(dtype: npt.DTypeLike) -> Callable[[Sequence[Any]], Column]:
     return partial(np.array, dtype=dtype)
 
 
+_INT64 = np.iinfo(np.int64)
+
+
+def _integers(values: Sequence[int]) -> Column:
+    """The wire carries whole numbers up to 2^64: beyond int64 the nearest that there is."""
+    try:
+        return np.array(values, dtype=np.int64)
+    except OverflowError:
+        return np.array([min(max(value, _INT64.min), _INT64.max) for value in values], dtype=np.int64)
+
+
 def _objects(values: Sequence[Any]) -> Column:
     column = np.empty(len(values), dtype=object)
     column[:] = values
@@ -43,25 +54,31 @@ def _objects(values: Sequence[Any]) -> Column:
 
 
 def _seconds(values: Sequence[int]) -> Column:
-    return np.array(values, dtype=np.int64) / 1e9
+    return _integers(values) / 1e9
 
 
 def _seconds_if_any(values: Sequence[int]) -> Column:
-    times = np.array(values, dtype=np.int64)
+    times = _integers(values)
     return np.where(times >= 0, times / 1e9, np.nan)
 
 
-INTEGER = Kind(_array(np.int64))
+def _matrix(scans: Sequence[npt.NDArray[np.float32]]) -> Column:
+    if len({len(scan) for scan in scans}) > 1:
+        raise DecodeError("laser scans of different length")
+    return np.array(scans, dtype=np.float32)
+
+
+INTEGER = Kind(_integers)
 REAL = Kind(_array(np.float64))
 WORD = Kind(_array(np.str_))
 FLAG = Kind(_array(np.bool_))
 OBJECT = Kind(_objects)
 """Bytes and maps as they are."""
 
-INTEGERS = Kind(_objects, tuple)
+INTEGERS = Kind(_objects)
 """Tuples of different length."""
 
-TOTAL = Kind(_array(np.int64), sum)
+TOTAL = Kind(_integers, sum)
 """Sum of a list of whole numbers."""
 
 SECONDS = Kind(_seconds)
@@ -70,7 +87,7 @@ SECONDS = Kind(_seconds)
 SECONDS_IF_ANY = Kind(_seconds_if_any)
 """From ns; a negative time stands for never, and is nan."""
 
-RANGES = Kind(_array(np.float32), partial(np.frombuffer, dtype="<f4"))
+RANGES = Kind(_matrix)
 """Laser scans as a matrix, (rows, n_beams) float32 [m]."""
 
 
@@ -91,28 +108,40 @@ class TableSpec(NamedTuple):
     columns: tuple[ColumnSpec, ...]
 
 
-def _whole(message: dict[str, Any]) -> Sequence[Part]:
+def _whole(message: Any) -> Sequence[Any]:
     """One row a message."""
     return (message,)
 
 
-def _requests(truth: dict[str, Any]) -> Sequence[Part]:
+class _Request(NamedTuple):
+    robot: int
+    destination: int
+    msdu_bytes: int
+    payload: bytes
+
+
+def _requests(truth: Truth) -> Sequence[_Request]:
     return [
-        {"robot": request["robot"], **sent}
-        for request in truth["transmit_requests"]
-        for sent in request["outbox"]
+        _Request(request.robot, sent.destination, sent.msdu_bytes, sent.payload)
+        for request in truth.transmit_requests
+        for sent in request.outbox
     ]
 
 
-def _control(record: dict[str, Any]) -> Sequence[Part]:
-    return [{"kind": kind, "bytes": size} for kind, size in sorted(record["control_bytes"].items())]
+class _ControlBytes(NamedTuple):
+    kind: str
+    bytes: int
+
+
+def _control(record: RadioRecord) -> Sequence[_ControlBytes]:
+    return [_ControlBytes(*item) for item in sorted(record.control_bytes.items())]
 
 
 _C = ColumnSpec
 
 TABLES: dict[str, TableSpec] = {
     "poses": TableSpec(
-        "a robot at a tick, ground truth", "truth", itemgetter("present"),
+        "a robot at a tick, ground truth", "truth", attrgetter("present"),
         (
             _C("robot", INTEGER), _C("incarnation", INTEGER),
             _C("x", REAL, "pose.x"), _C("y", REAL, "pose.y"), _C("heading", REAL, "pose.heading"),
@@ -133,11 +162,11 @@ TABLES: dict[str, TableSpec] = {
         ),
     ),
     "notes": TableSpec(
-        "an event that a robot notes", "out/", itemgetter("notes"),
+        "an event that a robot notes", "out/", attrgetter("notes"),
         (_C("robot", INTEGER, BUS_KEY), _C("kind", WORD), _C("data", OBJECT)),
     ),
     "verdicts": TableSpec(
-        "what became of a message", "radio", itemgetter("verdicts"),
+        "what became of a message", "radio", attrgetter("verdicts"),
         (
             _C("source", INTEGER), _C("message", INTEGER), _C("destination", INTEGER),
             _C("receiver", INTEGER), _C("status", WORD), _C("msdu_bytes", INTEGER),
@@ -149,7 +178,7 @@ TABLES: dict[str, TableSpec] = {
         ),
     ),
     "receptions": TableSpec(
-        "a message that arrived", "rx/", itemgetter("receptions"),
+        "a message that arrived", "rx/", attrgetter("receptions"),
         (
             _C("robot", INTEGER, BUS_KEY), _C("source", INTEGER),
             _C("service_start_s", SECONDS, "service_start_ns"), _C("arrival_s", SECONDS, "arrival_ns"),
@@ -169,17 +198,17 @@ TABLES: dict[str, TableSpec] = {
         (_C("kind", WORD), _C("bytes", INTEGER)),
     ),
     "contacts": TableSpec(
-        "a collision", "truth", itemgetter("contacts"),
+        "a collision", "truth", attrgetter("contacts"),
         (_C("robot", INTEGER), _C("other", INTEGER), _C("x", REAL), _C("y", REAL)),
     ),
     "departures": TableSpec(
-        "a robot that left", "truth", itemgetter("departures"), (_C("robot", INTEGER), _C("why", WORD)),
+        "a robot that left", "truth", attrgetter("departures"), (_C("robot", INTEGER), _C("why", WORD)),
     ),
     "cuts": TableSpec(
-        "a cut in force", "truth", itemgetter("cuts"), (_C("side_a", INTEGERS), _C("side_b", INTEGERS)),
+        "a cut in force", "truth", attrgetter("cuts"), (_C("side_a", INTEGERS), _C("side_b", INTEGERS)),
     ),
     "jams": TableSpec(
-        "a jam in force", "truth", itemgetter("jams"),
+        "a jam in force", "truth", attrgetter("jams"),
         (_C("x", REAL), _C("y", REAL), _C("radius", REAL), _C("noise_dbm", REAL)),
     ),
     "scans": TableSpec(

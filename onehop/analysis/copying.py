@@ -1,11 +1,38 @@
 """Copy the records of a log into a new file without understanding them."""
 
 import os
+from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, Self
+from typing import BinaryIO, Self
 
-from mcap.records import Attachment, Channel, Header, Message, Metadata, Schema
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Message, Metadata, Schema
 from mcap.writer import CompressionType, Writer
+
+from onehop import __version__
+from onehop.wire.log_writer import OUTCOME
+from onehop.wire.records import (
+    Record,
+    RecordError,
+    attachment,
+    channel,
+    content_of,
+    message,
+    metadata,
+    records_in,
+    schema,
+)
+
+
+def parsed(data: bytes) -> Iterator[Schema | Channel | Message]:
+    """The records of a stretch as values. Raises RecordError."""
+    for opcode, begin, end in records_in(data):
+        if opcode == Opcode.MESSAGE:
+            yield message(data[begin:end])
+        elif opcode == Opcode.CHANNEL:
+            yield channel(data[begin:end])
+        elif opcode == Opcode.SCHEMA:
+            yield schema(data[begin:end])
 
 
 class LogCopy:
@@ -14,56 +41,75 @@ class LogCopy:
     Used in a with statement. It appears under its name only when it is finished, so it may take the
     place of the file that it copies.
 
-    keys: topic of every channel that was taken, by its id in the old file.
+    origin: a word for its header. topics: of every channel that was taken, by its id in the old file.
     """
 
     def __init__(self, path: Path, origin: str) -> None:
         self._path, self._draft = path, path.with_name(path.name + ".part")
         self._stream = self._draft.open("wb")
         self.writer = Writer(self._stream, chunk_size=1 << 20, compression=CompressionType.ZSTD)
-        self._origin = origin
+        self.writer.start("", f"onehop {__version__}, {origin}")
         self._schemas: dict[int, int] = {0: 0}
         self._channels: dict[int, int] = {}
-        self.keys: dict[int, str] = {}
+        self._outcome: list[Metadata] = []
+        self.topics: dict[int, str] = {}
 
-    def take(self, record: Any) -> None:
-        """Copy anything but a message."""
-        if isinstance(record, Header):
-            self.writer.start(record.profile, f"{record.library}, {self._origin}")
-        elif isinstance(record, Schema) and record.id not in self._schemas:
-            self._schemas[record.id] = self.writer.register_schema(
-                record.name, record.encoding, record.data
-            )
-        elif isinstance(record, Channel) and record.id not in self._channels:
-            self._take_channel(record)
-        elif isinstance(record, Metadata):
-            self._settle()
-            self.writer.add_metadata(record.name, record.metadata)
-        elif isinstance(record, Attachment):
-            self._settle()
-            self.writer.add_attachment(
-                record.create_time, record.log_time, record.name, record.media_type, record.data
-            )
+    def take_apart(self, stream: BinaryIO, records: Iterable[Record]) -> None:
+        """Copy metadata and attachments that are sound; the outcome waits for the end."""
+        for record in records:
+            try:
+                if record.opcode == Opcode.METADATA:
+                    self._take_metadata(metadata(content_of(stream, record)))
+                else:
+                    self._take_attachment(attachment(content_of(stream, record)))
+            except RecordError:
+                continue
+        self.settle()
 
-    def _settle(self) -> None:
-        """Write out the messages so far: the writer holds them back, and nothing may overtake them."""
-        self.writer.flush()  # type: ignore[no-untyped-call]
+    def _take_metadata(self, about: Metadata) -> None:
+        if about.name == OUTCOME:
+            self._outcome = [about]
+        else:
+            self.writer.add_metadata(about.name, about.metadata)
 
-    def _take_channel(self, record: Channel) -> None:
-        self.keys[record.id] = record.topic
-        self._channels[record.id] = self.writer.register_channel(
-            record.topic, record.message_encoding, self._schemas[record.schema_id], record.metadata
+    def _take_attachment(self, file: Attachment) -> None:
+        self.writer.add_attachment(
+            file.create_time, file.log_time, file.name, file.media_type, file.data
         )
 
-    def take_message(self, message: Message) -> None:
+    def settle(self) -> None:
+        """End the chunk: nothing that follows can overtake it, and its head says which ticks it has."""
+        self.writer.flush()  # type: ignore[no-untyped-call]
+
+    def take(self, record: Schema | Channel) -> None:
+        """Copy a schema or a channel, unless its id is taken already. Raises RecordError."""
+        if isinstance(record, Schema):
+            if record.id not in self._schemas:
+                self._schemas[record.id] = self.writer.register_schema(
+                    record.name, record.encoding, record.data
+                )
+            return
+        before = self.topics.setdefault(record.id, record.topic)
+        if before != record.topic:
+            raise RecordError(f"channel {record.id} has two topics")
+        if record.id not in self._channels:
+            if record.schema_id not in self._schemas:
+                raise RecordError(f"channel {record.id} has a schema that there is not")
+            self._channels[record.id] = self.writer.register_channel(
+                record.topic, record.message_encoding, self._schemas[record.schema_id], record.metadata
+            )
+
+    def take_message(self, one: Message) -> None:
         """Copy a message of a channel that was taken."""
         self.writer.add_message(
-            self._channels[message.channel_id], message.log_time, message.data,
-            message.publish_time, message.sequence,
-        )  # fmt: skip
+            self._channels[one.channel_id], one.log_time, one.data, one.publish_time, one.sequence
+        )
 
     def finish(self) -> None:
-        """Write summary and index; the file takes its name."""
+        """Write the outcome, summary and index; the file takes its name."""
+        self.settle()
+        for about in self._outcome:
+            self.writer.add_metadata(about.name, about.metadata)
         self.writer.finish()  # type: ignore[no-untyped-call]
         self._stream.close()
         os.replace(self._draft, self._path)

@@ -8,14 +8,19 @@ from onehop.analysis.log import Log
 from onehop.analysis.payloads import decoded_fields
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
+from onehop.wire.audit import Audit
 from onehop.wire.codec import as_map
 from onehop.wire.difference import first_difference
 from onehop.wire.journal import canonical_rank
+from onehop.wire.log_reader import LoggedTick
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One message that differs. channel "" is the end of a log; a value is None where it is absent."""
+    """One message that differs; a value is None where it is absent.
+
+    channel "": ticks from this one on that only one of the logs has.
+    """
 
     tick: int
     channel: str
@@ -26,76 +31,79 @@ class Difference:
 
 @dataclass(slots=True)
 class Comparison:
-    """What a comparison found. scenario: keys of the two scenarios that differ, with both values."""
+    """What a comparison found. scenario: keys of the two scenarios that differ, with both values.
+
+    ticks: how many both have. flaws_a, flaws_b: why a log is not all that was said (audit.py).
+    """
 
     ticks: int = 0
     messages: int = 0
     differing: int = 0
     first: Difference | None = None
     scenario: list[tuple[str, Any, Any]] = field(default_factory=list)
+    flaws_a: list[str] = field(default_factory=list)
+    flaws_b: list[str] = field(default_factory=list)
 
     @property
     def same(self) -> bool:
-        return self.first is None and not self.scenario
+        """Whether everything was compared, and nothing differs."""
+        flawed = self.flaws_a or self.flaws_b
+        return self.messages > 0 and self.first is None and not self.scenario and not flawed
 
 
 def compare(a: Log, b: Log) -> Comparison:
-    """Compare two logs message by message, in canonical order, until the shorter one ends."""
+    """Compare two logs message by message, in canonical order. Raises LogError."""
     found = Comparison(scenario=list(_scenario_differences(as_map(a.scenario), as_map(b.scenario), "")))
-    left, right = _ticks(a), _ticks(b)
-    while True:
-        mine, other = next(left, None), next(right, None)
-        if mine is None or other is None:
-            _add(found, _end(mine, other))
-            return found
-        found.ticks += 1
-        for difference in _of_tick(mine, other, found):
-            _add(found, difference)
-        if mine[0] != other[0]:
-            return found
+    audit_a, audit_b = Audit(a.file), Audit(b.file)
+    last: tuple[bool, bool] = (True, True)
+    for tick, one, other in _side_by_side(audit_a.ticks(), audit_b.ticks()):
+        if one is not None and other is not None:
+            found.ticks += 1
+            for difference in _of_tick(one, other, found):
+                _add(found, difference)
+        elif (one is not None, other is not None) != last:
+            _add(found, Difference(tick, "", "tick", *map(_presence, (one, other))))
+        last = one is not None, other is not None
+    found.flaws_a, found.flaws_b = audit_a.flaws, audit_b.flaws
+    return found
 
 
-TickMessages = tuple[int, dict[str, bytes]]
-"""A tick, and its wire messages by bus key, as they stand in the log."""
+def _side_by_side(
+    a: Iterator[LoggedTick], b: Iterator[LoggedTick]
+) -> Iterator[tuple[int, LoggedTick | None, LoggedTick | None]]:
+    """Each tick that one of two logs has, with None for the log that has it not."""
+    one, other = next(a, None), next(b, None)
+    while one is not None or other is not None:
+        tick = min(side.tick for side in (one, other) if side is not None)
+        here = one if one is not None and one.tick == tick else None
+        there = other if other is not None and other.tick == tick else None
+        yield tick, here, there
+        one = one if here is None else next(a, None)
+        other = other if there is None else next(b, None)
 
 
-def _ticks(log: Log) -> Iterator[TickMessages]:
-    tick, messages = -1, dict[str, bytes]()
-    for number, key, data in log.messages("truth", "radio", "rx/", "obs/", "out/"):
-        if number != tick:
-            if messages:
-                yield tick, messages
-            tick, messages = number, {}
-        messages[key] = data
-    if messages:
-        yield tick, messages
-
-
-def _of_tick(a: TickMessages, b: TickMessages, found: Comparison) -> Iterator[Difference]:
-    if a[0] != b[0]:
-        yield Difference(min(a[0], b[0]), "", "tick", a[0], b[0])
-        return
-    for key in sorted({*a[1], *b[1]}, key=canonical_rank):
+def _of_tick(a: LoggedTick, b: LoggedTick, found: Comparison) -> Iterator[Difference]:
+    in_a, in_b = dict(a.messages), dict(b.messages)
+    for key in sorted({*in_a, *in_b}, key=canonical_rank):
         found.messages += 1
-        mine, other = a[1].get(key), b[1].get(key)
-        if mine == other:
+        one, other = in_a.get(key), in_b.get(key)
+        if one == other:
             continue
-        if mine is None or other is None:
-            yield Difference(a[0], topics.wire(key), "message", _presence(mine), _presence(other))
+        if one is None or other is None:
+            yield Difference(a.tick, topics.wire(key), "message", _presence(one), _presence(other))
         elif found.first is None:
-            yield Difference(a[0], topics.wire(key), *_field(mine, other))
+            yield Difference(a.tick, topics.wire(key), *_field(one, other))
         else:
-            yield Difference(a[0], topics.wire(key), "", None, None)
+            yield Difference(a.tick, topics.wire(key), "", None, None)
 
 
-def _add(found: Comparison, difference: Difference | None) -> None:
-    if difference is not None:
-        found.differing += 1
-        found.first = found.first or difference
+def _add(found: Comparison, difference: Difference) -> None:
+    found.differing += 1
+    found.first = found.first or difference
 
 
-def _presence(data: bytes | None) -> str | None:
-    return None if data is None else "present"
+def _presence(what: object) -> str | None:
+    return None if what is None else "present"
 
 
 def _field(a: bytes, b: bytes) -> tuple[str, Any, Any]:
@@ -104,13 +112,6 @@ def _field(a: bytes, b: bytes) -> tuple[str, Any, Any]:
     except DecodeError:
         different = None
     return different or ("bytes", a.hex(), b.hex())
-
-
-def _end(a: TickMessages | None, b: TickMessages | None) -> Difference | None:
-    longer = a or b
-    if longer is None:
-        return None
-    return Difference(longer[0], "", "end of the log", *("goes on" if one else None for one in (a, b)))
 
 
 def _scenario_differences(a: Any, b: Any, path: str) -> Iterator[tuple[str, Any, Any]]:

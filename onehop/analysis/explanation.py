@@ -107,7 +107,7 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         raise InputError(f"--at {at_s:g}", "the log ends before that", f"at most {last_s:g} s")
     own = [
         trace
-        for trace in join(ground["verdicts"], ground["transmit_requests"])
+        for trace in join(ground["verdicts"], ground["transmit_requests"], log.period_ns)
         if robot in (trace.receiver, trace.source)
     ]
     changes = [data for kind, data in _notes(tables["notes"]) if kind == "mode"]
@@ -150,7 +150,7 @@ def _notes(notes: Table) -> list[tuple[str, dict[str, Any]]]:
 
 def _since(status: Table, name: str) -> Since:
     column = status[name]
-    other = np.flatnonzero(column != column[-1])
+    other = np.flatnonzero(column[:-1] != column[-1])
     row = int(other[-1]) + 1 if len(other) else 0
     return Since(column[-1].item(), float(status["time_s"][row]))
 
@@ -190,7 +190,7 @@ def _last_command(own: list[MessageTrace], robot: int, leader: int) -> float | N
 
 def _events(notes: Table, start_s: float) -> tuple[dict[str, Any], ...]:
     return tuple(
-        {"at_s": time_s, "kind": kind, **data}
+        {**data, "at_s": time_s, "kind": kind}
         for time_s, (kind, data) in zip(notes["time_s"].tolist(), _notes(notes), strict=True)
         if time_s > start_s
     )

@@ -8,6 +8,10 @@ from onehop.analysis.explanation import Explanation
 from onehop.analysis.message_traces import MessageTrace
 from onehop.analysis.payloads import summary_of
 from onehop.contracts.messages import DeliveryStatus
+from onehop.contracts.printable import ids_in_words, in_words, printable
+
+MOST_LINES = 200
+"""Events and messages that are listed, the last ones: a robot can send thousands in a second."""
 
 WHY_LOST = {
     DeliveryStatus.BELOW_THRESHOLD: "the signal was too weak: distance, a wall, a cut link or a jammer",
@@ -32,22 +36,31 @@ def explanation_text(one: Explanation) -> Iterator[str]:
     yield from (f"  fault in force: {fault}" for fault in one.faults)
     yield ""
     yield "Events before it"
-    yield from (_event(event) for event in one.events)
-    if not one.events:
-        yield "  none"
+    yield from _last_of([_event(event) for event in one.events[-MOST_LINES - 1 :]], len(one.events))
     yield ""
     yield "Messages to it and from it"
-    yield from _messages(one)
-    if not one.traces:
+    groups = _messages(one)
+    lines = [_message_line(group, one.robot) for group in groups[-MOST_LINES - 1 :]]
+    yield from _last_of(lines, len(groups))
+
+
+def _last_of(lines: list[str], number: int) -> Iterator[str]:
+    """The last lines of so many."""
+    if not lines:
         yield "  none"
+    if number > MOST_LINES:
+        yield f"  {number - MOST_LINES} earlier ones (--json has them)"
+    yield from lines[-MOST_LINES:]
 
 
 def _state(one: Explanation) -> Iterator[str]:
     status, roster = one.status, one.roster.value
     change = one.mode_change
-    why = f", on {change['on']!r}, before that {change['was']}" if change else ", from the start"
+    why = ", from the start"
+    if change is not None:
+        why = f", on {_said(change, 'on')!r}, before that {_said(change, 'was')}"
     yield f"mode     {one.mode.value} since {one.mode.since_s:.2f} s{why}"
-    members = " ".join(map(str, roster["members"])) or "nobody"
+    members = ids_in_words(roster["members"]) or "nobody"
     whom = "itself" if roster["leader"] == one.robot else f"robot {roster['leader']}"
     yield (
         f"roster   obeys {whom}: epoch {roster['epoch']}, members {members}, {roster['shape']}, "
@@ -91,41 +104,40 @@ def _gain(one: Explanation) -> Iterator[str]:
         )
 
 
+def _said(data: dict[str, Any], key: str) -> str:
+    """What a note says under a key: a robot can leave it out, or put anything there."""
+    return in_words(data.get(key, "?"))
+
+
 def _event(event: dict[str, Any]) -> str:
     if event["kind"] == "mode":
-        return f"  {event['at_s']:8.2f} s  mode: {event['was']} -> {event['mode']}, on {event['on']!r}"
+        change = f"{_said(event, 'was')} -> {_said(event, 'mode')}, on {_said(event, 'on')!r}"
+        return f"  {event['at_s']:8.2f} s  mode: {change}"
     details = ", ".join(
-        f"{key} {' '.join(map(str, value)) if isinstance(value, list | tuple) else _short(value)}"
-        for key, value in event.items()
-        if key not in ("at_s", "kind")
+        f"{printable(key)} {_said(event, key)}" for key in event if key not in ("at_s", "kind")
     )
-    return (
-        f"  {event['at_s']:8.2f} s  {event['kind'].replace('_', ' ')}{': ' if details else ''}{details}"
-    )
+    kind = printable(event["kind"].replace("_", " "))
+    return f"  {event['at_s']:8.2f} s  {kind}{': ' if details else ''}{details}"
 
 
-def _short(value: Any) -> str:
-    return f"{value:z.2f}" if isinstance(value, float) else str(value)
+def _messages(one: Explanation) -> list[list[MessageTrace]]:
+    """Each message to it and from it; of a broadcast of the robot, together what each receiver got."""
+    groups: dict[tuple[int, ...], list[MessageTrace]] = {}
+    for place, trace in enumerate(one.traces):
+        of_its_own = trace.source == one.robot and trace.broadcast
+        groups.setdefault((trace.number,) if of_its_own else (-1, place), []).append(trace)
+    return list(groups.values())
 
 
-def _messages(one: Explanation) -> Iterator[str]:
-    """One line a message; a broadcast of the robot is one line, however many were to receive it."""
-    listed: set[int] = set()
-    for trace in one.traces:
-        if trace.source != one.robot or not trace.broadcast:
-            yield _message(trace, one.robot)
-        elif trace.number not in listed:
-            listed.add(trace.number)
-            copies = [other for other in one.traces if _same(trace, other)]
-            yield _broadcast(trace, copies)
-
-
-def _same(trace: MessageTrace, other: MessageTrace) -> bool:
-    return (trace.source, trace.number) == (other.source, other.number)
+def _message_line(traces: list[MessageTrace], robot: int) -> str:
+    first = traces[0]
+    if first.source == robot and first.broadcast:
+        return _broadcast(first, traces)
+    return _message(first, robot)
 
 
 def _broadcast(trace: MessageTrace, copies: list[MessageTrace]) -> str:
-    reached = " ".join(str(copy.receiver) for copy in copies if copy.delivered) or "nobody"
+    reached = ids_in_words(copy.receiver for copy in copies if copy.delivered) or "nobody"
     missed = ", ".join(f"{copy.receiver} {copy.status}" for copy in copies if not copy.delivered)
     lost = f", LOST: {missed}" if missed else ""
     return (
@@ -144,6 +156,6 @@ def _message(trace: MessageTrace, robot: int) -> str:
         snr = "" if math.isinf(trace.snr_db) else f" (SNR {trace.snr_db:.1f} dB)"
         outcome = f"LOST, {trace.status}{snr}: {WHY_LOST[DeliveryStatus(trace.status)]}"
     tries = f", attempts {trace.attempts}" if trace.attempts > 1 else ""
-    via = f", via {' '.join(map(str, trace.path[1:-1]))}" if len(trace.path) > 2 else ""
+    via = f", via {ids_in_words(trace.path[1:-1])}" if len(trace.path) > 2 else ""
     says = summary_of(trace.message)
     return f"  {trace.offered_s:8.2f} s  {direction:<7} {trace.kind:<13} {outcome}{tries}{via}; {says}"

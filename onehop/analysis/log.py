@@ -11,23 +11,23 @@
 Nothing is held in memory but what was asked for; a stretch of time is found without unpacking the rest.
 """
 
+import math
 from collections.abc import Iterable, Iterator
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
-from onehop.analysis.columns import TABLES
+import numpy as np
+
+from onehop.analysis.columns import TABLES, Column
 from onehop.analysis.tables import Table, build
 from onehop.contracts import topics
-from onehop.contracts.errors import InputError
+from onehop.contracts.errors import DecodeError, InputError
 from onehop.contracts.messages import Action, Inbox, Observation, RadioRecord, Truth
 from onehop.contracts.scenario import Scenario
-from onehop.contracts.values import Wire
 from onehop.scenario.bundle import Bundle
-from onehop.wire.codec import decode
-from onehop.wire.log_reader import LogFile
-from onehop.wire.selection import Selected, one_of, select
-
-M = TypeVar("M", bound=Wire)
+from onehop.wire.log_reader import LogFile, forged
+from onehop.wire.logged import M, value_of
+from onehop.wire.selection import Selected, one_of
 
 
 class Log:
@@ -35,7 +35,8 @@ class Log:
 
     scenario, bundle: what was run. metadata: versions, driver. summary: what `onehop run` printed, None
     if the log ends before the mission did.
-    torn: its recorder was killed. file: the same log, tick by tick.
+    torn: its recorder was killed. flaws: what is wrong with it beyond that, as far as it can be seen
+    without reading all of it (log_reader.py says how far). file: the same log, tick by tick.
     """
 
     def __init__(self, file: LogFile) -> None:
@@ -46,6 +47,7 @@ class Log:
         self.period_ns = self.scenario.clock.period_ns
         self.summary: dict[str, Any] | None = file.summary
         self.torn = file.torn
+        self.flaws = tuple(file.flaws)
         self.file = file
 
     @property
@@ -54,7 +56,9 @@ class Log:
         return self.scenario.team.robots
 
     def tick_at(self, time_s: float) -> int:
-        """The tick of a simulated time [s]."""
+        """The tick of a simulated time [s]. Raises InputError for a time that is no finite number."""
+        if not math.isfinite(time_s):
+            raise InputError(f"time {time_s}", "is no moment of a mission", "a number of seconds")
         return round(time_s * 1e9 / self.period_ns)
 
     def messages(
@@ -62,7 +66,7 @@ class Log:
     ) -> Iterator[Selected]:
         """Raw wire messages of bus keys, e.g. "truth", "out/3", "out/" (all robots), within a time."""
         last = None if end_s is None else self.tick_at(end_s)
-        return select(self.path, one_of(*keys), self.period_ns, self.tick_at(start_s), last)
+        return self.file.wire.select(one_of(*keys), self.tick_at(start_s), last)
 
     def truths(self, start_s: float = 0.0, end_s: float | None = None) -> Iterator[tuple[int, Truth]]:
         """(tick, ground truth)."""
@@ -95,8 +99,12 @@ class Log:
     def _typed(
         self, kind: type[M], key: str, start_s: float, end_s: float | None
     ) -> Iterator[tuple[int, M]]:
-        for tick, _, data in self.messages(key, start_s=start_s, end_s=end_s):
-            yield tick, decode(kind, data)
+        for message in self.messages(key, start_s=start_s, end_s=end_s):
+            try:
+                value = value_of(kind, message)
+            except DecodeError as error:
+                raise forged(self.path, error) from None
+            yield message.tick, value
 
     def table(
         self,
@@ -123,7 +131,34 @@ class Log:
                 )
         stems = sorted({TABLES[name].key for name in names})
         keys = [key for stem in stems for key in _keys(stem, robots)]
-        return build(names, self.messages(*keys, start_s=start_s, end_s=end_s), self.period_ns)
+        return self.build(names, self.messages(*keys, start_s=start_s, end_s=end_s))
+
+    def build(self, names: Iterable[str], messages: Iterable[Selected]) -> dict[str, Table]:
+        """Several tables of messages of this log. Raises LogError for a message that cannot be one."""
+        try:
+            tables = build(names, messages, self.period_ns)
+        except DecodeError as error:
+            raise forged(self.path, error) from None
+        for name, table in tables.items():
+            for column in _OF_THE_TEAM.get(name, ()):
+                self._check_team(name, table[column])
+        return tables
+
+    def _check_team(self, name: str, robots: Column) -> None:
+        strangers = robots[~np.isin(robots, self.robots)]
+        if len(strangers):
+            raise forged(self.path, f"{name} of robot {strangers[0]}, which is not in the team")
+
+
+_OF_THE_TEAM = {
+    "poses": ("robot",),
+    "transmit_requests": ("robot",),
+    "departures": ("robot",),
+    "contacts": ("robot",),
+    "verdicts": ("source",),
+    "receptions": ("source",),
+}
+"""Columns in which world and radio name robots of the team, and nobody else."""
 
 
 def _keys(stem: str, robots: Iterable[int] | None) -> list[str]:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from onehop.analysis.log import Log
 from onehop.analysis.payloads import decode_payload, kind_of
 from onehop.analysis.tables import Table
+from onehop.contracts.messages import BROADCAST
 from robot_agent.core.team.team_messages import TeamMessage
 
 
@@ -17,8 +18,8 @@ from robot_agent.core.team.team_messages import TeamMessage
 class MessageTrace:
     """One message to one receiver. Times in s of the mission; arrival_s is nan when it was lost.
 
-    settled_s: end of the tick in which its delivery status was known. kind: kind_of(message). path:
-    source to last holder. attempts: over all hops.
+    settled_s: end of the tick in which its delivery status was known. kind: kind_of(message), "unknown"
+    when the log does not hold it. path: source to last holder. attempts: over all hops.
     """
 
     source: int
@@ -45,33 +46,60 @@ class MessageTrace:
 def traces(log: Log, start_s: float = 0.0, end_s: float | None = None) -> list[MessageTrace]:
     """Messages that were settled within a time, in the order in which the radio settled them."""
     verdicts = log.table("verdicts", start_s=start_s, end_s=end_s)
-    return list(join(verdicts, log.table("transmit_requests", end_s=end_s)))
+    return list(join(verdicts, log.table("transmit_requests", end_s=end_s), log.period_ns))
 
 
-def join(verdicts: Table, requests: Table) -> Iterator[MessageTrace]:
+def join(verdicts: Table, requests: Table, period_ns: int) -> Iterator[MessageTrace]:
     """verdicts: of any stretch; requests: from the start of the mission, since they are counted."""
-    payloads: dict[tuple[int, int], bytes] = {}
-    counts: dict[int, int] = {}
-    for robot, payload in zip(requests["robot"].tolist(), requests["payload"], strict=True):
-        counts[robot] = counts.get(robot, 0) + 1
-        payloads[robot, counts[robot]] = payload
-    for row in range(len(verdicts)):
-        source, number = int(verdicts["source"][row]), int(verdicts["message"][row])
-        message = decode_payload(payloads.get((source, number), b""))
+    outboxes = _Outboxes(requests)
+    columns = (
+        "source", "message", "destination", "receiver", "offered_s", "arrival_s", "time_s", "status",
+        "path", "attempts", "snr_db", "bit_error_rate", "msdu_bytes",
+    )  # fmt: skip
+    for (
+        source, number, destination, receiver, offered_s, arrival_s, settled_s, status,
+        path, attempts, snr_db, bit_error_rate, msdu_bytes,
+    ) in verdicts.rows(*columns):  # fmt: skip
+        tick = round(offered_s * 1e9 / period_ns) + 1
+        payload = outboxes.payload(source, number, tick, destination)
+        message = None if payload is None else decode_payload(payload)
         yield MessageTrace(
             source=source,
-            receiver=int(verdicts["receiver"][row]),
+            receiver=receiver,
             number=number,
-            broadcast=int(verdicts["destination"][row]) == 0,
-            kind=kind_of(message),
+            broadcast=destination == BROADCAST,
+            kind="unknown" if payload is None else kind_of(message),
             message=message,
-            offered_s=float(verdicts["offered_s"][row]),
-            arrival_s=float(verdicts["arrival_s"][row]),
-            settled_s=float(verdicts["time_s"][row]),
-            status=str(verdicts["status"][row]),
-            path=verdicts["path"][row],
-            attempts=int(verdicts["attempts"][row]),
-            snr_db=float(verdicts["snr_db"][row]),
-            bit_error_rate=float(verdicts["bit_error_rate"][row]),
-            msdu_bytes=int(verdicts["msdu_bytes"][row]),
+            offered_s=offered_s,
+            arrival_s=arrival_s,
+            settled_s=settled_s,
+            status=status,
+            path=path,
+            attempts=attempts,
+            snr_db=snr_db,
+            bit_error_rate=bit_error_rate,
+            msdu_bytes=msdu_bytes,
         )
+
+
+class _Outboxes:
+    """Payloads by source and number. Where ticks are missing in the log the count is wrong behind them:
+
+    then a payload is found by the tick in which it was handed to the radio and its destination, if it is
+    the only one.
+    """
+
+    def __init__(self, requests: Table) -> None:
+        self._counted: dict[int, list[tuple[int, int, bytes]]] = {}
+        self._sent: dict[tuple[int, int, int], list[bytes]] = {}
+        for robot, *sent in requests.rows("robot", "tick", "destination", "payload"):
+            tick, destination, payload = sent
+            self._counted.setdefault(robot, []).append((tick, destination, payload))
+            self._sent.setdefault((robot, tick, destination), []).append(payload)
+
+    def payload(self, source: int, number: int, tick: int, destination: int) -> bytes | None:
+        counted = self._counted.get(source, [])
+        if 0 < number <= len(counted) and counted[number - 1][:2] == (tick, destination):
+            return counted[number - 1][2]
+        sent = self._sent.get((source, tick, destination), [])
+        return sent[0] if len(sent) == 1 else None

@@ -7,7 +7,8 @@ import msgpack
 import numpy as np
 
 from onehop.contracts.errors import DecodeError
-from onehop.wire.codec import as_map
+from onehop.contracts.printable import ids_in_words
+from onehop.wire.codec import UNPACK_REFUSALS, as_map
 from robot_agent.core.team.team_messages import (
     Ack,
     Beacon,
@@ -31,7 +32,7 @@ def decoded_fields(data: bytes) -> Any:
     """A wire message as maps and lists, scan and payloads included. Raises DecodeError."""
     try:
         return _decoded(msgpack.unpackb(data))
-    except (ValueError, msgpack.UnpackException) as error:
+    except UNPACK_REFUSALS as error:
         raise DecodeError(f"not msgpack: {error}") from None
 
 
@@ -73,13 +74,13 @@ def summary_of(message: TeamMessage | None) -> str:
     """What a team message says, in a few words."""
     if isinstance(message, Command):
         roster = message.roster
-        lost = f", lost {_ids(message.lost)}" if message.lost else ""
-        return f"epoch {roster.epoch}, leader {roster.leader} of {_ids(roster.members)}{lost}"
+        lost = f", lost {ids_in_words(message.lost)}" if message.lost else ""
+        return f"epoch {roster.epoch}, leader {roster.leader} of {ids_in_words(roster.members)}{lost}"
     if isinstance(message, Ack):
         return f"epoch {message.epoch}, {'in its slot' if message.in_position else 'on its way'}"
     if isinstance(message, Beacon):
         roster = message.roster
-        return f"epoch {roster.epoch}, leader {roster.leader} of {_ids(roster.members)}"
+        return f"epoch {roster.epoch}, leader {roster.leader} of {ids_in_words(roster.members)}"
     if isinstance(message, Join):
         return f"asks to be taken in, epoch {message.epoch}"
     return ""
@@ -88,7 +89,3 @@ def summary_of(message: TeamMessage | None) -> str:
 def _plain(message: TeamMessage) -> Mapping[str, Any]:
     plain: Mapping[str, Any] = as_map(message)
     return plain
-
-
-def _ids(robots: tuple[int, ...]) -> str:
-    return " ".join(map(str, robots))

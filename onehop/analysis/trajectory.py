@@ -3,6 +3,7 @@
 from pathlib import Path
 from textwrap import fill
 
+import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -14,9 +15,10 @@ from matplotlib.patheffects import withStroke
 from onehop.analysis.ground import draw_ground
 from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, INK, robot_colours
-from onehop.analysis.tables import Table, build
+from onehop.analysis.tables import Table
 from onehop.analysis.timeline import LastSeen, departures, describe_fault, leadership
 from onehop.contracts.messages import LeadershipTerm
+from onehop.contracts.printable import printable
 from onehop.wire.log_reader import LogFile
 
 SNAPSHOT_S = 20.0
@@ -44,10 +46,11 @@ def draw_trajectory(log: LogFile, path: Path) -> None:
 
 def figure_of(log: Log, tables: dict[str, Table]) -> Figure:
     """The figure, not yet bound to a canvas; tables: poses, status, departures and contacts."""
-    figure = Figure(figsize=(10.5, 8.2))
-    axes = figure.add_axes((0.06, 0.06, 0.68, 0.89))
-    axes.grid(visible=False)
-    _draw(axes, log, tables)
+    with mpl.rc_context({"text.parse_math": False}):
+        figure = Figure(figsize=(10.5, 8.2))
+        axes = figure.add_axes((0.06, 0.06, 0.68, 0.89))
+        axes.grid(visible=False)
+        _draw(axes, log, tables)
     return figure
 
 
@@ -79,7 +82,7 @@ def _tables(log: Log) -> dict[str, Table]:
         for message in log.messages("truth", "out/")
         if message.key == "truth" or message.tick % stride == 0
     )
-    return build(("poses", "status", "departures", "contacts"), chosen, log.period_ns)
+    return log.build(("poses", "status", "departures", "contacts"), chosen)
 
 
 def _draw_path(axes: Axes, own: Table, colour: str) -> None:
@@ -169,8 +172,9 @@ def _draw_departure(axes: Axes, departure: LastSeen, colour: str) -> None:
     axes.plot(*spot, marker="o", markersize=15, color="white", markeredgecolor=colour, zorder=7)
     axes.plot(*spot, marker="x", markersize=9, color=BAD, markeredgewidth=2.8, zorder=7.5)
     axes.annotate(
-        f"{departure.robot} {departure.why}, {departure.at_s:.0f} s", spot, textcoords="offset points",
-        xytext=(12, -4), fontsize=9, fontweight="bold", color=BAD, zorder=9, path_effects=_HALO,
+        f"{departure.robot} {printable(departure.why, 60)}, {departure.at_s:.0f} s", spot,
+        textcoords="offset points", xytext=(12, -4), fontsize=9, fontweight="bold", color=BAD, zorder=9,
+        path_effects=_HALO,
     )  # fmt: skip
 
 
@@ -187,6 +191,8 @@ def _draw_leaders(
             continue
         previous = term.leader
         own = poses.of(term.leader)
+        if not len(own):
+            continue
         row = min(int(np.searchsorted(own["time_s"], term.at_s)), len(own) - 1)
         spot = float(own["x"][row]), float(own["y"][row])
         axes.plot(
@@ -205,10 +211,11 @@ def _draw_leaders(
 
 
 def _legend(log: Log, gone: list[LastSeen], colours: dict[int, str]) -> list[Line2D]:
-    outcomes = {departure.robot: f"{departure.why}, {departure.at_s:.0f} s" for departure in gone}
+    outcomes = {one.robot: f"{printable(one.why, 60)}, {one.at_s:.0f} s" for one in gone}
     if log.summary is not None:
         lost = {
-            entry["robot"]: f"{entry['why']}, {entry['at_s']:.0f} s" for entry in log.summary["lost"]
+            entry["robot"]: f"{printable(entry['why'], 60)}, {entry['at_s']:.0f} s"
+            for entry in log.summary["lost"]
         }
         outcomes = {**outcomes, **lost, **dict.fromkeys(log.summary["arrived"], "arrived")}
     handles = [
@@ -242,5 +249,6 @@ def _title(log: Log) -> str:
     if log.summary is None:
         return f"{head}: the log ends before the mission did"
     return (
-        f"{head}: {log.summary['outcome']} after {log.summary['sim_s']:.0f} s ({log.summary['reason']})"
+        f"{head}: {log.summary['outcome']} after {log.summary['sim_s']:.0f} s "
+        f"({printable(log.summary['reason'], 200)})"
     )

@@ -16,7 +16,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from onehop.commands.output import emit_json
-from onehop.contracts.plain_text import plain
+from onehop.contracts.printable import printable
 from onehop.wire.output_folder import require_writable
 
 LIBRARIES = (
@@ -97,7 +97,7 @@ def _tried(name: str, attempt: Callable[[], str], remedy: str) -> Check:
     try:
         return Check(name, True, True, attempt(), "")
     except Exception as error:
-        return Check(name, False, True, plain(f"{error}"), remedy)
+        return Check(name, False, True, printable(f"{error}"), remedy)
 
 
 def _bus() -> str:

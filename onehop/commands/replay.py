@@ -3,9 +3,10 @@
 from pathlib import Path
 from typing import Any
 
-from onehop.commands.logs import open_with_warning
+from onehop.commands.logs import check_moment, open_with_warning, warn_of_flaws
 from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
+from onehop.contracts.printable import json_value, printable
 from onehop.drivers.replay import Divergence, Report
 from onehop.drivers.replay import replay as re_execute
 from onehop.scenario.bundle import changed
@@ -20,6 +21,7 @@ def replay(
     as_json: bool,
 ) -> int:
     """Re-execute robots, radio and world of a log; returns the exit status."""
+    _check_stretch(first_s, last_s)
     log = open_with_warning(path).file
     scenario = log.bundle.scenario
     if robot is not None and robot not in scenario.team.robots:
@@ -43,7 +45,20 @@ def replay(
         emit_json(_as_json(report))
     else:
         _print(report, period, bool(settings))
-    return 0 if report.divergences == 0 else 1
+    warn_of_flaws(path, report.flaws)
+    return 0 if report.same else 1
+
+
+def _check_stretch(first_s: float | None, last_s: float | None) -> None:
+    """Raises InputError for a stretch of time in which nothing can lie."""
+    if first_s is not None:
+        check_moment("--from", first_s)
+    if last_s is not None:
+        check_moment("--to", last_s)
+        if first_s is not None and last_s < first_s:
+            raise InputError(
+                f"--from {first_s:g} --to {last_s:g}", "ends before it begins", "--from before --to"
+            )
 
 
 def _as_json(report: Report) -> dict[str, Any]:
@@ -60,30 +75,34 @@ def _as_json(report: Report) -> dict[str, Any]:
             "robot": first.robot,
             "channel": first.channel,
             "field": first.field,
-            "recorded": _plain(first.recorded),
-            "replayed": _plain(first.replayed),
+            "recorded": json_value(first.recorded),
+            "replayed": json_value(first.replayed),
         },
         "per_channel": report.per_channel,
+        "flaws": report.flaws,
     }
-
-
-def _plain(value: Any) -> Any:
-    return value.hex() if isinstance(value, bytes) else value
 
 
 def _print(report: Report, period: float, what_if: bool) -> None:
     names = f"robot{'s' if len(report.robots) > 1 else ''} {', '.join(map(str, report.robots))}"
     print(f"{report.ticks} ticks, {names}: {report.compared} messages compared")
-    if report.first is None:
+    if report.first is not None:
+        print(f"{report.divergences} divergences{' under the changed setting' if what_if else ''}")
+        print(f"first: {_sentence(report.first, period)}")
+    elif not report.compared:
+        print("nothing was compared: the log has no message of what was asked for")
+    elif report.flaws:
+        print("0 divergences in what was compared; it is not all that was said in the mission")
+    else:
         print("0 divergences: every message is the same, byte for byte")
-        return
-    print(f"{report.divergences} divergences{' under the changed setting' if what_if else ''}")
-    print(f"first: {_sentence(report.first, period)}")
 
 
 def _sentence(first: Divergence, period: float) -> str:
     who = f"robot {first.robot}" if first.robot else first.channel
+    where = f"tick {first.tick} ({first.tick * period:.2f} s), {who}, {first.channel}"
+    if not first.field:
+        return f"{where}: fails on what is recorded, {printable(str(first.replayed))}"
     return (
-        f"tick {first.tick} ({first.tick * period:.2f} s), {who}, {first.channel}, field {first.field}: "
-        f"recorded {_plain(first.recorded)!r:.80}, replayed {_plain(first.replayed)!r:.80}"
+        f"{where}, field {printable(first.field)}: recorded {json_value(first.recorded)!r:.80}, "
+        f"replayed {json_value(first.replayed)!r:.80}"
     )

@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from onehop.analysis.report.page import write_report
-from onehop.commands.logs import open_with_warning
+from onehop.commands.logs import open_with_warning, warn_of_flaws
 from onehop.commands.output import emit_json
 
 
@@ -12,8 +12,9 @@ def report(path: Path, out: Path | None, film: str | None, as_json: bool) -> int
     """Write everything into a folder, by default `report` beside the log; returns the exit status."""
     log = open_with_warning(path)
     folder = out or path.parent / "report"
-    page, figures = write_report(log, folder)
+    page, figures, flaws = write_report(log, folder)
     written: dict[str, Any] = {"report": str(page), "figures": [str(figure) for figure in figures]}
+    written["flaws"] = flaws
     if film is not None:
         from onehop.analysis.film import write_film
 
@@ -27,4 +28,5 @@ def report(path: Path, out: Path | None, film: str | None, as_json: bool) -> int
         print(f"figures  {', '.join(figure.name for figure in figures)} (and .svg)")
         if film is not None:
             print(f"film     {written['film']}")
-    return 0
+    warn_of_flaws(path, flaws)
+    return 1 if flaws else 0

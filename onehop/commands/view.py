@@ -7,7 +7,7 @@ from typing import Any
 
 from onehop.analysis.view.layer import write_view
 from onehop.analysis.view.rerun_layout import write_layout
-from onehop.commands.logs import open_with_warning
+from onehop.commands.logs import open_with_warning, warn_of_flaws
 from onehop.commands.output import emit_json, say
 from onehop.contracts.errors import InputError
 
@@ -16,12 +16,13 @@ def view(path: Path, out: Path | None, open_viewer: bool, as_json: bool) -> int:
     """Write the viewer layer, into the log itself by default; returns the exit status."""
     log = open_with_warning(path)
     target = out or path
-    if log.torn and out is None:
-        raise InputError(str(path), "is torn, and is not overwritten", "name a new file with -o")
+    if out is None and (log.torn or log.flaws):
+        why = "is torn" if log.torn else log.flaws[0]
+        raise InputError(str(path), f"{why}: it is not overwritten", "name a new file with -o")
     viewer = shutil.which("rerun")
     if open_viewer and viewer is None:
         raise InputError("--open", "Rerun is not installed", "pip install 'onehop[rerun]'")
-    counts = write_view(log, target)
+    counts, flaws = write_view(log, target)
     layout = write_layout(log, target)
     if as_json:
         written: dict[str, Any] = {"log": str(target), "topics": counts}
@@ -33,4 +34,5 @@ def view(path: Path, out: Path | None, open_viewer: bool, as_json: bool) -> int:
     if open_viewer and viewer is not None:
         say("starting Rerun")
         subprocess.Popen([viewer, str(target), *([str(layout)] if layout else [])])
-    return 0
+    warn_of_flaws(path, flaws)
+    return 1 if flaws else 0

@@ -1,8 +1,9 @@
 """Re-execute the parts of a mission from its log alone, and compare everything that they say.
 
-A robot is fed with the observations and inboxes that it was given, the radio with every truth, the world
-with every action; nothing else goes in. If the cores are what they were and depend on nothing hidden,
-every output is the same, byte for byte.
+A robot is fed with the observations and inboxes that it was given, the radio with every truth, the
+world with every action; nothing else goes in. If the cores are what they were and depend on nothing
+hidden, every output is the same, byte for byte. State grows from the start of the mission, so a
+re-execution ends where a tick is missing.
 """
 
 from collections.abc import Callable, Iterator
@@ -13,14 +14,18 @@ import msgpack
 
 from onehop.contracts import topics
 from onehop.contracts.briefings import radio_briefing, robot_briefing
-from onehop.contracts.errors import DecodeError
+from onehop.contracts.errors import DecodeError, OnehopError
 from onehop.contracts.messages import Action, Inbox, Observation, Truth, percept
 from onehop.contracts.scenario import Scenario
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
-from onehop.wire.codec import decode, encode
+from onehop.wire.audit import Audit
+from onehop.wire.codec import UNPACK_REFUSALS, decode, encode
 from onehop.wire.difference import first_difference
-from onehop.wire.log_reader import LogFile, LoggedTick
+from onehop.wire.journal import canonical_rank
+from onehop.wire.log_reader import LogFile, LoggedTick, forged
+from onehop.wire.logged import M, value_of
+from onehop.wire.selection import Selected
 from radio_proxy.core.radio import Radio
 from robot_agent.core.robot import Robot
 from world_server.core.world import World
@@ -28,7 +33,10 @@ from world_server.core.world import World
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """An output that differs from the recorded one. robot is 0 for world and radio."""
+    """An output that differs from the recorded one. robot is 0 for world and radio.
+
+    field "message": only one of the two said anything; the value of the other is None.
+    """
 
     tick: int
     channel: str
@@ -40,7 +48,7 @@ class Divergence:
 
 @dataclass(slots=True)
 class Report:
-    """What a re-execution found."""
+    """What a re-execution found. flaws: why the log is not all that was said (audit.py)."""
 
     ticks: int = 0
     robots: tuple[int, ...] = ()
@@ -48,6 +56,12 @@ class Report:
     divergences: int = 0
     first: Divergence | None = None
     per_channel: dict[str, int] = field(default_factory=dict)
+    flaws: list[str] = field(default_factory=list)
+
+    @property
+    def same(self) -> bool:
+        """Whether everything that was asked for was compared, and is the same."""
+        return self.compared > 0 and not self.divergences and not self.flaws
 
     def add(self, divergence: Divergence) -> None:
         self.divergences += 1
@@ -71,75 +85,162 @@ def replay(
     """Re-execute robots (all by default) and, with parts, radio and world; compare every output.
 
     Outputs before first_tick are made (state has to grow from the start) but not compared.
-    scenario: run the robots with this one instead of the log's own (what-if).
+    scenario: run the robots with this one instead of the log's own (what-if). Raises LogError.
     """
     original = log.bundle.scenario
     chosen = original.team.robots if robots is None else robots
-    players: list[Player] = [_Robots(scenario or original, chosen).play]
+    players: dict[str, Player] = {
+        topics.out(i): _RobotPlayer(scenario or original, i).play for i in chosen
+    }
     if parts:
         walls = load_map(original.map, log.bundle.files)
-        players += [_radio(original, walls), _WorldPlayer(original, walls).play]
+        players[topics.RADIO_RECORD] = _radio(original, walls)
+        players[topics.TRUTH] = _WorldPlayer(original, walls).play
     report = Report(robots=chosen)
-    for tick in log.ticks():
-        if last_tick is not None and tick.tick > last_tick:
-            break
-        recorded = dict(tick.messages)
-        for player in players:
-            for key, data in player(tick):
-                if tick.tick < first_tick or key not in recorded:
-                    continue
-                report.compared += 1
-                if recorded[key] != data:
-                    report.add(_divergence(tick.tick, key, recorded[key], data))
-        report.ticks += tick.tick >= first_tick
+    audit = Audit(log)
+    comparison = _Comparison(report, players, everything=parts and robots is None, torn=log.torn)
+    try:
+        for number, tick in enumerate(audit.ticks()):
+            comparison.judge_before(tick)
+            if tick.tick != number or (last_tick is not None and tick.tick > last_tick):
+                break
+            if not comparison.on_tick(tick, counts=tick.tick >= first_tick):
+                break
+        else:
+            comparison.on_end()
+    except DecodeError as error:
+        raise forged(log.path, error) from None
+    report.flaws = audit.flaws
     return report
 
 
+class _Comparison:
+    """Lets the players speak to each tick, and compares what they say with what is recorded.
+
+    players: by the channel in which each says its part of a tick, or the first of its channels.
+    everything: whether they are all that speak in a mission.
+    """
+
+    def __init__(self, report: Report, players: dict[str, Player], everything: bool, torn: bool) -> None:
+        self._report = report
+        self._players = players
+        self._everything = everything
+        self._torn = torn
+        self._unjudged: list[Divergence] = []
+
+    def on_tick(self, tick: LoggedTick, counts: bool) -> bool:
+        """Compare a tick, if it counts; False when a component failed, so that nothing can follow."""
+        said: dict[str, bytes] = {}
+        for key, player in self._players.items():
+            try:
+                said.update(player(tick))
+            except OnehopError:
+                raise
+            except Exception as error:  # whatever a core makes of what was not recorded as it is
+                failure = f"{type(error).__name__}: {error}"
+                self._report.add(Divergence(tick.tick, topics.wire(key), _robot(key), "", None, failure))
+                return False
+        if counts:
+            self._report.ticks += 1
+            self._unjudged = list(self._differences(tick.tick, dict(tick.messages), said))
+        return True
+
+    def _differences(
+        self, tick: int, recorded: dict[str, bytes], said: dict[str, bytes]
+    ) -> Iterator[Divergence]:
+        for key in sorted({*recorded, *said}, key=canonical_rank):
+            if key not in said:
+                if self._everything or key in self._players:
+                    yield _only(tick, key, "present", None)
+            elif key not in recorded:
+                yield _only(tick, key, None, "present")
+            else:
+                self._report.compared += 1
+                if recorded[key] != said[key]:
+                    yield _divergence(tick, key, recorded[key], said[key])
+
+    def judge_before(self, tick: LoggedTick) -> None:
+        """Report the differences of the tick before this one.
+
+        A robot that left with this tick died before it could act, and its action is not missing.
+        """
+        if not self._unjudged:
+            return
+        truth = _value(Truth, tick, topics.TRUTH)
+        gone = set() if truth is None else {one.robot for one in truth.departures}
+        for one in self._unjudged:
+            if not (_is_missing(one) and one.channel.startswith(_OUT) and one.robot in gone):
+                self._report.add(one)
+        self._unjudged = []
+
+    def on_end(self) -> None:
+        """The log ends here. What its last tick lacks is lost with the tear, or was never said."""
+        for one in self._unjudged:
+            if not (_is_missing(one) and (self._torn or one.channel.startswith(_OUT))):
+                self._report.add(one)
+
+
+def _is_missing(divergence: Divergence) -> bool:
+    return divergence.field == "message" and divergence.recorded is None
+
+
+_OUT = topics.wire(topics.out(""))
+"""Beginning of the channels of actions."""
+
+
+def _only(tick: int, key: str, recorded: str | None, replayed: str | None) -> Divergence:
+    return Divergence(tick, topics.wire(key), _robot(key), "message", recorded, replayed)
+
+
+def _robot(key: str) -> int:
+    return int(key.partition("/")[2] or 0)
+
+
 def _divergence(tick: int, key: str, recorded: bytes, replayed: bytes) -> Divergence:
-    robot = int(key.partition("/")[2] or 0)
     try:
-        found = first_difference(_fields(recorded), _fields(replayed))
-    except (ValueError, msgpack.UnpackException) as error:
+        found = first_difference(msgpack.unpackb(recorded), msgpack.unpackb(replayed))
+    except UNPACK_REFUSALS as error:
         found = ("bytes", f"not decodable ({error})", "decodable")
     if found is None:
         found = ("encoding", recorded.hex()[:40], replayed.hex()[:40])
-    return Divergence(tick, topics.wire(key), robot, *found)
+    return Divergence(tick, topics.wire(key), _robot(key), *found)
 
 
-def _fields(data: bytes) -> Any:
-    return msgpack.unpackb(data)
+def _value(kind: type[M], tick: LoggedTick, key: str) -> M | None:
+    """The value of a message of a tick, None when there is none. Raises DecodeError."""
+    data = tick.get(key)
+    return None if data is None else value_of(kind, Selected(tick.tick, key, data))
 
 
-class _Robots:
-    """Every incarnation of the chosen robots."""
+class _RobotPlayer:
+    """One robot in every incarnation."""
 
-    def __init__(self, scenario: Scenario, robots: tuple[int, ...]) -> None:
+    def __init__(self, scenario: Scenario, robot: int) -> None:
         self._scenario = scenario
-        self._robots = robots
-        self._living: dict[int, tuple[int, Robot]] = {}
+        self._id = robot
+        self._incarnation = -1
+        self._robot: Robot | None = None
 
     def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
-        recorded = dict(tick.messages)
-        for i in self._robots:
-            seen, heard = recorded.get(topics.obs(i)), recorded.get(topics.rx(i))
-            if seen is None or heard is None:
-                continue
-            observation, inbox = decode(Observation, seen), decode(Inbox, heard)
-            incarnation = observation.incarnation
-            if i not in self._living or self._living[i][0] != incarnation:
-                briefing = robot_briefing(self._scenario, i, incarnation)
-                self._living[i] = incarnation, Robot(briefing)
-            yield topics.out(i), encode(self._living[i][1].step(percept(observation, inbox)))
+        i = self._id
+        observation = _value(Observation, tick, topics.obs(i))
+        inbox = _value(Inbox, tick, topics.rx(i))
+        if observation is None or inbox is None:
+            return
+        if self._robot is None or self._incarnation != observation.incarnation:
+            self._incarnation = observation.incarnation
+            self._robot = Robot(robot_briefing(self._scenario, i, self._incarnation))
+        yield topics.out(i), encode(self._robot.step(percept(observation, inbox)))
 
 
 def _radio(scenario: Scenario, walls: WallMap) -> Player:
     radio = Radio(radio_briefing(scenario, walls.segments))
 
     def play(tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
-        data = tick.get(topics.TRUTH)
-        if data is None:
+        truth = _value(Truth, tick, topics.TRUTH)
+        if truth is None:
             return
-        carried = radio.carry(decode(Truth, data))
+        carried = radio.carry(truth)
         yield topics.RADIO_RECORD, encode(carried.record)
         for i, inbox in carried.inboxes.items():
             yield topics.rx(i), encode(inbox)
@@ -154,11 +255,10 @@ class _WorldPlayer:
         self._world = World(scenario, walls)
 
     def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
-        data = tick.get(topics.TRUTH)
-        if data is None:
+        truth = _value(Truth, tick, topics.TRUTH)
+        if truth is None:
             return
         world = self._world
-        truth = decode(Truth, data)
         present = {presence.robot for presence in truth.present}
         for departure in truth.departures:
             if departure.robot not in present:

@@ -15,7 +15,7 @@ from pathlib import Path
 from onehop.contracts import topics
 from onehop.contracts.errors import InputError
 from onehop.contracts.messages import Death
-from onehop.contracts.plain_text import plain
+from onehop.contracts.printable import printable
 from onehop.node.bus import make_credentials
 from onehop.node.startup import CREDENTIALS_VARIABLE, PASSWORD_VARIABLE, WORLD_IS_GONE
 from onehop.wire.summary import Process
@@ -180,7 +180,7 @@ class ProcessGroup:
             lines = self._file(name).read_text(errors="replace").strip().splitlines()
         except OSError:
             return ""
-        return plain(lines[-1].strip()) if lines else ""
+        return printable(lines[-1].strip()) if lines else ""
 
     def _file(self, name: str) -> Path:
         return self._words / f"{name}.txt"

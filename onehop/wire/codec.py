@@ -7,12 +7,13 @@ is due. Arrays of laser ranges travel as little-endian float32 bytes.
 
 from typing import Any, TypeVar
 
+import msgpack
 import msgspec
 import numpy as np
 
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.plain_text import plain
+from onehop.contracts.printable import printable
 from onehop.contracts.values import WIRE_VERSION, Wire
 
 M = TypeVar("M", bound=Wire)
@@ -37,6 +38,9 @@ def _from_wire(_: type, value: Any) -> Ranges:
 REFUSALS = (msgspec.MsgspecError, UnicodeDecodeError, RecursionError)
 """What msgspec raises for bytes that are not the message they should be."""
 
+UNPACK_REFUSALS = (ValueError, TypeError, msgpack.UnpackException, RecursionError)
+"""What msgpack raises for bytes that are not msgpack, or not for Python: keys that are lists."""
+
 _ENCODER = msgspec.msgpack.Encoder(enc_hook=_to_wire)
 _DECODERS: dict[type, msgspec.msgpack.Decoder[Any]] = {}
 
@@ -57,7 +61,7 @@ def decode(kind: type[M], data: bytes) -> M:
             message: M = decoder.decode(data)
             return message
     except REFUSALS as error:
-        raise DecodeError(f"{kind.__name__}: {plain(str(error))}") from None
+        raise DecodeError(f"{kind.__name__}: {printable(str(error))}") from None
     raise DecodeError(f"{kind.__name__}: {_version_problem(data)}")
 
 
@@ -66,7 +70,7 @@ def _version_problem(data: bytes) -> str:
     try:
         fields = msgspec.msgpack.decode(data)
     except REFUSALS as error:
-        return f"not msgpack: {plain(str(error))}"
+        return f"not msgpack: {printable(str(error))}"
     if type(fields) is not dict or "v" not in fields:
         return "no schema version"
     if fields["v"] == WIRE_VERSION and fields["v"] is not True:

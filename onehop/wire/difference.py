@@ -30,5 +30,6 @@ def first_difference(recorded: Any, replayed: Any, path: str = "") -> tuple[str,
     if isinstance(recorded, np.ndarray):
         same = recorded.tobytes() == np.asarray(replayed).tobytes()
     else:
-        same = type(recorded) is type(replayed) and (recorded == replayed or recorded != recorded)
+        both_nan = recorded != recorded and replayed != replayed
+        same = type(recorded) is type(replayed) and (recorded == replayed or both_nan)
     return None if same else (path, recorded, replayed)

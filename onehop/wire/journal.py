@@ -7,8 +7,10 @@ made from that alone.
 
 import hashlib
 import struct
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import TypeAlias
+
+from onehop.contracts import topics
 
 WireMessage: TypeAlias = tuple[str, bytes]
 """A bus key without the mission prefix, and the bytes that crossed it."""
@@ -20,6 +22,12 @@ def canonical_rank(key: str) -> tuple[int, int]:
     """Where a key's message stands within its tick."""
     stem, _, robot = key.partition("/")
     return _RANK[stem], int(robot or 0)
+
+
+def keys_of(robots: Iterable[int]) -> frozenset[str]:
+    """Every key that the log of a mission of these robots can have."""
+    own = (key(robot) for robot in robots for key in (topics.rx, topics.obs, topics.out))
+    return frozenset((topics.TRUTH, topics.RADIO_RECORD, *own))
 
 
 class Digest:

@@ -1,32 +1,29 @@
 """Read a log, sound or torn: what it was made from, and its wire messages tick by tick.
 
-The file is read front to back, so a log whose recorder was killed gives everything up to the tear: only
-the last, unfinished record is missing.
+Opening a log reads its metadata, its attachments and the heads of its chunks, but no message. It makes
+sure that it is a log of ours with all that a mission is made from, and says in `flaws` what can be seen
+from there: ticks that are missing or not in their order, records that are damaged. Whatever is read
+after that is checked as it is read (selection.py); whether it is all that was said and as it was said,
+audit.py finds by its digest.
 """
 
-import json
-import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
-from io import BytesIO
 from itertools import groupby
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
-from mcap.data_stream import ReadDataStream
-from mcap.exceptions import InvalidMagic, McapError
-from mcap.opcode import Opcode
-from mcap.records import Attachment, Message, Metadata
-from mcap.stream_reader import StreamReader
-from zstandard import ZstdError
-
-from onehop.contracts.errors import LogError
+from onehop.contracts.errors import DecodeError, LogError
+from onehop.contracts.printable import printable
 from onehop.contracts.values import WIRE_VERSION
 from onehop.scenario.bundle import Bundle, bundle_from_json
-from onehop.wire.journal import Digest, WireMessage, canonical_rank
-from onehop.wire.log_writer import MAP_ATTACHMENT, SCENARIO_ATTACHMENT
-from onehop.wire.selection import select, walk
+from onehop.wire.contents import damaged, read_contents
+from onehop.wire.coverage import coverage_flaws
+from onehop.wire.journal import Digest, WireMessage, canonical_rank, keys_of
+from onehop.wire.log_writer import MAP_ATTACHMENT, OUTCOME, SCENARIO_ATTACHMENT
+from onehop.wire.selection import WireMessages
+from onehop.wire.summary import decode_summary
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,81 +42,78 @@ class LogFile:
     """One log. Raises LogError when it is none of ours or of a wire version that is not known.
 
     summary: what `onehop run` printed, None if the log ends before the mission did. torn: its recorder
-    was killed.
+    was killed. wire: its messages. unreadable: records that are damaged, in sentences. flaws: these, and
+    what is wrong with the row of its ticks.
     """
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.torn = True
-        self.metadata: dict[str, str] = {}
-        self.summary: dict[str, Any] | None = None
-        attachments: dict[str, bytes] = {}
-        for record in self._records():
-            if isinstance(record, Metadata) and record.name == "onehop":
-                self.metadata = record.metadata
-            elif isinstance(record, Attachment):
-                attachments[record.name] = record.data
-            elif isinstance(record, Message):
-                break
-        self._check_origin(attachments)
+        self.contents = read_contents(path)
+        self.torn = self.contents.torn
+        self.metadata = self.contents.metadata.get("onehop", {})
+        self.bundle = self._read_bundle()
+        scenario = self.bundle.scenario
+        self.wire = WireMessages(
+            path, self.contents, keys_of(scenario.team.robots), scenario.clock.period_ns
+        )
+        self.unreadable = [
+            f"it is damaged in the record at byte {error.at} ({error.why})"
+            for error in (*self.contents.unreadable, *filter(None, (self.contents.broken,)))
+        ]
+        self.summary = self._read_summary()
+        ticks = None if self.summary is None else self.summary["ticks"]
+        coverage = coverage_flaws(self.contents.stretches, scenario.clock.period_ns, ticks)
+        self.flaws = [*self.unreadable, *coverage]
+
+    def _read_bundle(self) -> Bundle:
+        version = self.metadata.get("wire_version")
+        attachments = self.contents.attachments
+        if version is None or SCENARIO_ATTACHMENT not in attachments:
+            for error in self.contents.unreadable:
+                raise damaged(self.path, error.at, error.why)
+            raise LogError(str(self.path), "not a log of a mission", "give a file that onehop run wrote")
+        if version != str(WIRE_VERSION):
+            raise LogError(
+                str(self.path),
+                f"wire schema version {printable(version, 20)}",
+                f"this program reads version {WIRE_VERSION}; use the onehop that wrote it "
+                f"({printable(self.metadata.get('onehop', 'unknown'), 40)})",
+            )
         files = {
             name.removeprefix(MAP_ATTACHMENT): data
             for name, data in attachments.items()
             if name.startswith(MAP_ATTACHMENT)
         }
-        text = attachments[SCENARIO_ATTACHMENT].decode()
-        self.bundle: Bundle = bundle_from_json(text, files, f"{path}: {SCENARIO_ATTACHMENT}")
-        self._read_end()
-
-    def _read_end(self) -> None:
-        with self.path.open("rb") as stream:
-            for opcode, length in walk(stream):
-                if opcode == Opcode.METADATA:
-                    record = Metadata.read(ReadDataStream(BytesIO(stream.read(length))))
-                    if record.name == "outcome":
-                        self.summary = json.loads(record.metadata["summary"])
-                self.torn = opcode != Opcode.FOOTER
-
-    def _check_origin(self, attachments: dict[str, bytes]) -> None:
-        version = self.metadata.get("wire_version")
-        if version is None or SCENARIO_ATTACHMENT not in attachments:
-            raise LogError(str(self.path), "not a log of a mission", "give a file that onehop run wrote")
-        if version != str(WIRE_VERSION):
-            raise LogError(
-                str(self.path),
-                f"wire schema version {version}",
-                f"this program reads version {WIRE_VERSION}; use the onehop that wrote it "
-                f"({self.metadata.get('onehop', 'unknown')})",
-            )
-
-    def _records(self) -> Iterator[Any]:
+        origin = f"{self.path}: {SCENARIO_ATTACHMENT}"
         try:
-            stream = self.path.open("rb")
-        except OSError as error:
-            raise LogError(
-                str(self.path), error.strerror or "cannot be read", "name a log that exists"
-            ) from None
-        with stream:
-            try:
-                yield from StreamReader(stream, validate_crcs=True).records
-            except (McapError, struct.error) as error:  # the file ends within a record
-                if isinstance(error, InvalidMagic):
-                    raise LogError(str(self.path), "not an MCAP file", "give a .mcap log") from None
-            except (ValueError, ZstdError) as error:
-                raise LogError(
-                    str(self.path), f"damaged near byte {stream.tell()} ({error})", "use a copy of it"
-                ) from None
+            return bundle_from_json(attachments[SCENARIO_ATTACHMENT].decode(), files, origin)
+        except (UnicodeDecodeError, RecursionError) as error:
+            raise LogError(origin, f"not JSON ({error})", "an attachment written by onehop") from None
+
+    def _read_summary(self) -> dict[str, Any] | None:
+        outcome = self.contents.metadata.get(OUTCOME)
+        if outcome is None:
+            return None
+        try:
+            return decode_summary(outcome.get("summary", ""))
+        except DecodeError as error:
+            self.unreadable.append(f"its outcome cannot be read ({error})")
+            return None
 
     def ticks(self) -> Iterator[LoggedTick]:
-        """Every tick with its wire messages, up to where the log is torn."""
-        messages = select(self.path, lambda _: True, self.bundle.scenario.clock.period_ns)
-        for number, group in groupby(messages, key=itemgetter(0)):
+        """Every tick with its wire messages, up to where the log is torn. Raises LogError."""
+        for number, group in groupby(self.wire.select(lambda _: True), key=itemgetter(0)):
             yield _in_order(LoggedTick(number, [(key, data) for _, key, data in group]))
 
 
 def _in_order(tick: LoggedTick) -> LoggedTick:
     tick.messages.sort(key=lambda message: canonical_rank(message[0]))
     return tick
+
+
+def forged(path: Path, why: object) -> LogError:
+    """The error of a log with a message that cannot have been recorded."""
+    return LogError(str(path), str(why), "it is not as it was recorded; use a copy of it")
 
 
 def digest(log: LogFile) -> str:

@@ -26,6 +26,8 @@ LOG_EPOCH_NS = 1_000_000_000 * 1_000_000_000
 
 SCENARIO_ATTACHMENT = "scenario.json"
 MAP_ATTACHMENT = "map/"
+OUTCOME = "outcome"
+"""Names in the file; the last is that of the metadata that end a log."""
 
 
 class LogWriter:
@@ -79,6 +81,6 @@ class LogWriter:
         """Finish the file; summary is what `onehop run` will print, None if there is none."""
         self.flush()  # the writer holds messages back, and the outcome must not overtake them
         if summary is not None:
-            self._writer.add_metadata("outcome", {"summary": json.dumps(summary, sort_keys=True)})
+            self._writer.add_metadata(OUTCOME, {"summary": json.dumps(summary, sort_keys=True)})
         self._writer.finish()  # type: ignore[no-untyped-call]
         self._stream.close()

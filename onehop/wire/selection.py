@@ -1,39 +1,28 @@
 """Pick messages out of a log by bus key and tick, without unpacking the rest.
 
-The file is walked record by record; a chunk whose ticks lie outside the range is skipped, not even
-decompressed, and a message of another key costs one look at its head. The layout of records is that of
-the MCAP specification (version 0): opcode, length, content.
+A chunk whose ticks lie outside of the range is skipped, not even decompressed, and a message of another
+key costs one look at its head. What is read is checked against itself: records, checksums, channels, and
+that time goes forward.
 """
 
-import struct
-import zlib
 from collections.abc import Callable, Iterator
-from io import BufferedReader
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-import zstandard
 from mcap.opcode import Opcode
 
 from onehop.contracts import topics
-from onehop.contracts.errors import LogError
+from onehop.contracts.printable import printable
+from onehop.wire.contents import Contents, damaged, records_of
 from onehop.wire.log_writer import LOG_EPOCH_NS
+from onehop.wire.records import MESSAGE, RecordError, records_in, topic_of
 
-_WIRE = topics.wire("")
-_MAGIC = 8
-"""Length of the magic bytes before the first record [B]; LogFile has looked at them."""
+WIRE = topics.wire("")
+"""Beginning of the topics of wire channels."""
 
-_RECORD = struct.Struct("<BQ")
-"""Opcode and length [B] before every record."""
-
-_CHUNK = struct.Struct("<QQQII")
-"""Head of a chunk: first and last log time, uncompressed size and CRC-32, length of the next text."""
-
-_CHANNEL = struct.Struct("<HHI")
-"""Head of a channel: id, schema id, length of the topic; the topic follows."""
-
-_MESSAGE = struct.Struct("<HIQQ")
-"""Head of a message: channel, sequence, log time, publish time; the data follows."""
+_LAST_TICK = (1 << 32) - 1
+"""The sequence number of a message, which is its tick, has 32 bits."""
 
 
 class Selected(NamedTuple):
@@ -58,98 +47,94 @@ def one_of(*keys: str) -> Wanted:
     return wanted
 
 
-def walk(stream: BufferedReader) -> Iterator[tuple[int, int]]:
-    """(opcode, length) of every whole record, the stream at its content; stops where the log is torn."""
-    end = stream.seek(0, 2)
-    at = _MAGIC
-    while at + _RECORD.size <= end:
-        stream.seek(at)
-        opcode, length = _RECORD.unpack(stream.read(_RECORD.size))
-        at += _RECORD.size + length
-        if at > end:
+@dataclass(frozen=True, slots=True)
+class WireMessages:
+    """The wire messages of a log. keys: every key that a log of this mission can have."""
+
+    path: Path
+    contents: Contents
+    keys: frozenset[str]
+    period_ns: int
+
+    def select(
+        self, wanted: Wanted, first_tick: int = 0, last_tick: int | None = None
+    ) -> Iterator[Selected]:
+        """Wanted messages of first_tick..last_tick, in the order of the log; stops where it is torn.
+
+        Raises LogError where the log is not sound.
+        """
+        final = _LAST_TICK if last_tick is None else last_tick
+        begin_ns = LOG_EPOCH_NS + first_tick * self.period_ns
+        end_ns = LOG_EPOCH_NS + final * self.period_ns
+        reader = _Reader(wanted, self.keys, self.period_ns, first_tick, final)
+        channels, stretches = self.contents.channels, self.contents.stretches
+        at = 0
+        with self.path.open("rb") as stream:
+            try:
+                for channel in channels:
+                    reader.learn(channel.id, channel.topic)
+                for stretch in stretches:
+                    if stretch.first_ns > end_ns or (channels and stretch.last_ns < begin_ns):
+                        continue
+                    at = stretch.at
+                    yield from reader.messages(records_of(stretch, stream))
+                broken = self.contents.broken
+                if broken is not None and not (stretches and stretches[-1].first_ns > end_ns):
+                    raise broken
+            except RecordError as error:
+                raise damaged(self.path, max(at, error.at), error.why) from None
+
+
+class _Reader:
+    """Reads stretches one after the other. Raises RecordError."""
+
+    def __init__(
+        self, wanted: Wanted, known: frozenset[str], period_ns: int, first_tick: int, last_tick: int
+    ) -> None:
+        self._wanted, self._known = wanted, known
+        self._period_ns = period_ns
+        self._first_tick, self._last_tick = first_tick, last_tick
+        self._topics: dict[int, str] = {}
+        self._keys: dict[int, str] = {}
+        self._tick, self._time_ns = -1, 0
+
+    def learn(self, channel: int, topic: str) -> None:
+        """The topic of a channel: always the same one, and of wire channels one that a mission has."""
+        before = self._topics.setdefault(channel, topic)
+        if before != topic:
+            raise RecordError(f"channel {channel} is {_quoted(before)} and {_quoted(topic)}")
+        key = topic.removeprefix(WIRE)
+        if not topic.startswith(WIRE):
             return
-        yield opcode, length
-        if opcode == Opcode.FOOTER:
-            return
+        if key not in self._known:
+            raise RecordError(f"this mission has no channel {_quoted(topic)}")
+        if self._wanted(key):
+            self._keys[channel] = key
+
+    def messages(self, data: bytes) -> Iterator[Selected]:
+        """The wanted messages among records."""
+        head, keys, size = MESSAGE.unpack_from, self._keys, MESSAGE.size
+        first, last = self._first_tick, self._last_tick
+        for opcode, begin, end in records_in(data):
+            if opcode == Opcode.MESSAGE:
+                channel, tick, time_ns, _ = head(data, begin)
+                if channel in keys:
+                    if tick != self._tick or time_ns != self._time_ns:
+                        self._on_tick(tick, time_ns)
+                    if first <= tick <= last:
+                        yield Selected(tick, keys[channel], data[begin + size : end])
+                elif channel not in self._topics:
+                    raise RecordError(f"a message of channel {channel}, which there is not")
+            elif opcode == Opcode.CHANNEL:
+                self.learn(*topic_of(data[begin:end]))
+
+    def _on_tick(self, tick: int, time_ns: int) -> None:
+        if time_ns != LOG_EPOCH_NS + tick * self._period_ns:
+            raise RecordError(f"a message of tick {tick} has the log time of another")
+        if tick < self._tick:
+            raise RecordError(f"tick {tick} comes after tick {self._tick}")
+        self._tick, self._time_ns = tick, time_ns
 
 
-def select(
-    path: Path, wanted: Wanted, period_ns: int, first_tick: int = 0, last_tick: int | None = None
-) -> Iterator[Selected]:
-    """Wanted messages of first_tick..last_tick, in the order of the log; stops where the log is torn.
-
-    Raises LogError when a chunk is damaged.
-    """
-    final = last_tick if last_tick is not None else (1 << 62) // period_ns
-    begin_ns, end_ns = LOG_EPOCH_NS + first_tick * period_ns, LOG_EPOCH_NS + final * period_ns
-    with path.open("rb") as stream:
-        names = _indexed(stream, wanted)
-        indexed = bool(names)
-        for opcode, length in walk(stream):
-            if opcode != Opcode.CHUNK:
-                continue
-            start = stream.tell()
-            first_ns, last_ns, size, crc, text = _head(stream)
-            if first_ns > end_ns:
-                return
-            if indexed and last_ns < begin_ns:
-                continue
-            compression = stream.read(text)
-            stream.seek(8, 1)
-            packed = stream.read(start + length - stream.tell())
-            data = _unpacked(path, start, packed, compression, size, crc)
-            yield from _messages(data, wanted, names, first_tick, final)
-
-
-def _indexed(stream: BufferedReader, wanted: Wanted) -> dict[int, str]:
-    """Wanted channels as the summary at the end of a sound file lists them; nothing for a torn one."""
-    names: dict[int, str] = {}
-    for opcode, length in walk(stream):
-        if opcode == Opcode.CHANNEL:
-            _learn(stream.read(length), wanted, names)
-    return names
-
-
-def _learn(record: bytes, wanted: Wanted, names: dict[int, str]) -> None:
-    channel, _, length = _CHANNEL.unpack_from(record)
-    topic = record[_CHANNEL.size : _CHANNEL.size + length].decode()
-    key = topic.removeprefix(_WIRE)
-    if topic.startswith(_WIRE) and wanted(key):
-        names[channel] = key
-
-
-def _head(stream: BufferedReader) -> tuple[int, int, int, int, int]:
-    first_ns, last_ns, size, crc, text = _CHUNK.unpack(stream.read(_CHUNK.size))
-    return first_ns, last_ns, size, crc, text
-
-
-def _unpacked(path: Path, at: int, packed: bytes, compression: bytes, size: int, crc: int) -> bytes:
-    try:
-        data = zstandard.decompress(packed, size) if compression == b"zstd" else packed
-    except zstandard.ZstdError as error:
-        raise _damaged(path, at, str(error)) from None
-    if crc and zlib.crc32(data) != crc:
-        raise _damaged(path, at, "its checksum is wrong")
-    return data
-
-
-def _damaged(path: Path, at: int, why: str) -> LogError:
-    remedy = "onehop salvage saves what comes before"
-    return LogError(str(path), f"damaged in the record at byte {at} ({why})", remedy)
-
-
-def _messages(
-    data: bytes, wanted: Wanted, names: dict[int, str], first_tick: int, last_tick: int
-) -> Iterator[Selected]:
-    record, head, length = _RECORD.unpack_from, _MESSAGE.unpack_from, len(data)
-    at = 0
-    while at < length:
-        opcode, size = record(data, at)
-        body = at + _RECORD.size
-        at = body + size
-        if opcode == Opcode.MESSAGE:
-            channel, tick, _, _ = head(data, body)
-            if channel in names and first_tick <= tick <= last_tick:
-                yield Selected(tick, names[channel], data[body + _MESSAGE.size : at])
-        elif opcode == Opcode.CHANNEL:
-            _learn(data[body:at], wanted, names)
+def _quoted(topic: str) -> str:
+    return repr(printable(topic, 60))

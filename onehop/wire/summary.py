@@ -7,10 +7,14 @@ knows, and takes from it what it has missed. Inline the run itself writes it.
 import json
 from collections.abc import Iterable, Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
-from onehop.contracts.messages import Outcome
-from onehop.wire.codec import as_map
+import msgspec
+
+from onehop.contracts.errors import DecodeError
+from onehop.contracts.messages import LeadershipTerm, Lost, Outcome
+from onehop.contracts.printable import printable
+from onehop.wire.codec import REFUSALS, as_map
 from onehop.wire.output_folder import REMEDY, SUMMARY, explained
 
 
@@ -43,6 +47,30 @@ def summarize(
         "log": log,
         "collisions": outcome.collisions,
     }
+
+
+class _Summary(msgspec.Struct):
+    """What every reader of a summary relies on; whatever else is in it is left as it is."""
+
+    outcome: Literal["arrived", "failed", "aborted"]
+    reason: str
+    arrived: list[int]
+    lost: list[Lost]
+    leaders: list[LeadershipTerm]
+    ticks: Annotated[int, msgspec.Meta(ge=0)]
+    sim_s: float
+    digest: str | None
+    collisions: int
+
+
+def decode_summary(text: str) -> dict[str, Any]:
+    """The inverse of json.dumps for a summary. Raises DecodeError for anything else."""
+    try:
+        fields: dict[str, Any] = msgspec.json.decode(text)
+        msgspec.convert(fields, _Summary)
+    except REFUSALS as error:
+        raise DecodeError(printable(str(error))) from None
+    return fields
 
 
 def summary_file(folder: Path) -> Path:

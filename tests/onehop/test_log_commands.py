@@ -5,11 +5,13 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import msgpack
 import pytest
 
 from onehop.cli import main
 from onehop.wire.log_reader import LogFile
 from onehop.wire.log_writer import LogWriter
+from tests.onehop.log_forms import Form, chunks, ticks_of, write_form
 from tests.onehop.scenes import field, log_of
 
 
@@ -69,7 +71,7 @@ def test_diff_of_two_logs_is_1_and_names_the_end_of_the_shorter(
 ) -> None:
     answer = onehop("diff", recorded, torn, "--json")
     assert answer.status == 1
-    assert answer.json["first"]["field"] == "end of the log"
+    assert (answer.json["first"]["field"], answer.json["first"]["b"]) == ("tick", None)
 
 
 def test_a_torn_log_is_read_with_one_line_of_warning(onehop: Any, torn: Path) -> None:
@@ -140,3 +142,107 @@ def test_report_lists_what_it_wrote(onehop: Any, recorded: Path, tmp_path: Path)
     assert answer.status == 0
     assert Path(answer.json["report"]).read_text().startswith("<!doctype html>")
     assert {Path(figure).name for figure in answer.json["figures"]} >= {"timeline.png", "followers.png"}
+
+
+@pytest.fixture
+def short(recorded: Path, tmp_path: Path) -> Path:
+    """The log without its last chunk."""
+    head, *middle, tail = chunks(recorded.read_bytes(), tmp_path / "scratch")
+    path = tmp_path / "short.mcap"
+    path.write_bytes(b"".join((head, *middle[:-1], tail)))
+    return path
+
+
+MISSING = "ticks 71..79 are missing of 80"
+
+
+def test_every_command_that_reads_all_of_a_log_says_what_is_missing_and_ends_with_1(
+    onehop: Any, short: Path, recorded: Path, tmp_path: Path
+) -> None:
+    for command in (
+        ("replay", short),
+        ("diff", short, short),
+        ("diff", recorded, short),
+        ("view", short, "-o", tmp_path / "view.mcap"),
+        ("salvage", short, "-o", tmp_path / "saved.mcap"),
+    ):
+        answer = onehop(*command)
+        assert answer.status == 1, command
+        assert MISSING in answer.out + answer.err, command
+
+
+def test_explain_warns_of_what_is_missing(onehop: Any, short: Path) -> None:
+    answer = onehop("explain", short, "--robot", 1, "--at", 2)
+    assert answer.status == 0
+    assert answer.err.count("\n") == 1
+    assert MISSING in answer.err
+
+
+@pytest.mark.slow
+def test_a_report_says_what_is_missing(onehop: Any, short: Path, tmp_path: Path) -> None:
+    answer = onehop("report", short, "--out", tmp_path / "report")
+    assert answer.status == 1
+    assert MISSING in answer.err
+    assert MISSING in (tmp_path / "report" / "report.html").read_text()
+
+
+def test_view_does_not_overwrite_a_log_that_lacks_something(onehop: Any, short: Path) -> None:
+    before = short.read_bytes()
+    answer = onehop("view", short)
+    assert answer.status == 2
+    assert MISSING in answer.err
+    assert short.read_bytes() == before
+
+
+def test_nothing_is_the_same_where_there_is_nothing(onehop: Any, recorded: Path, tmp_path: Path) -> None:
+    empty = tmp_path / "empty.mcap"
+    write_form(recorded, empty, Form(), [], outcome=False)
+    for command in (("replay", empty), ("diff", empty, empty)):
+        answer = onehop(*command)
+        assert answer.status == 1
+        assert "nothing was compared" in answer.out
+        assert "it has not one tick" in answer.err
+
+
+def test_replay_of_a_stretch_behind_the_end_is_1(onehop: Any, recorded: Path) -> None:
+    answer = onehop("replay", recorded, "--from", 100)
+    assert answer.status == 1
+    assert "nothing was compared" in answer.out
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ("replay", "--to", "inf"),
+        ("replay", "--to", "nan"),
+        ("replay", "--from=-1"),
+        ("replay", "--from", 5, "--to", 3),
+        ("explain", "--robot", 1, "--at", "nan"),
+        ("explain", "--robot", 1, "--at", "inf"),
+        ("explain", "--robot", 1, "--at", 1, "--window", "nan"),
+    ],
+)
+def test_a_time_that_is_none_is_refused_in_one_line(
+    onehop: Any, recorded: Path, arguments: tuple[object, ...]
+) -> None:
+    command, *options = arguments
+    answer = onehop(command, recorded, *options)
+    assert answer.status == 2
+    assert answer.err.count("\n") == 1
+    assert "--" in answer.err
+
+
+def test_the_json_of_a_divergence_is_json_whatever_was_said(
+    onehop: Any, recorded: Path, tmp_path: Path
+) -> None:
+    ticks = ticks_of(recorded)
+    fields = msgpack.unpackb(dict(ticks[3][1])["out/1"])
+    fields["twist"]["v"] = float("nan")
+    ticks[3] = 3, [(k, msgpack.packb(fields) if k == "out/1" else d) for k, d in ticks[3][1]]
+    path = tmp_path / "nan.mcap"
+    write_form(recorded, path, Form(), ticks)
+    for command in (("replay", path, "--robot", 1), ("diff", path, recorded)):
+        answer = onehop(*command, "--json")
+        assert answer.status == 1
+        first = json.loads(answer.out, parse_constant=pytest.fail)["first"]
+        assert "nan" in (first.get("recorded"), first.get("a"))

@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from onehop.analysis.palette import BAD, FAINT, INK
+from onehop.analysis.report.election_rows import elections
 from onehop.analysis.report.report_data import ReportData
 
 DPI = 110
@@ -21,7 +22,11 @@ _COMPRESSION = 3
 _NAME_WIDTH = 0.07
 """Room that the name of a turn takes, as a share of the time axis; where it lacks, there is no name."""
 
+MOST_CHANGES = 100
+"""Where the lead changes more often, lines for it would hide everything else, and there are none."""
+
 _STYLE = {
+    "text.parse_math": False,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.edgecolor": FAINT,
@@ -59,11 +64,9 @@ def mark_turns(axes: Axes, report: ReportData, named: bool = False) -> None:
     for span in report.faults:
         axes.axvspan(span.start_s, span.end_s, color="#F3E3E3", linewidth=0, zorder=0)
     turns = [(one.at_s, f"{one.robot} gone", BAD) for one in report.gone]
-    turns += [
-        (after.at_s, f"{after.leader} leads", INK)
-        for before, after in zip(report.main_terms, report.main_terms[1:], strict=False)
-        if before.leader != after.leader
-    ]
+    changes = elections(report)
+    if len(changes) <= MOST_CHANGES:
+        turns += [(after.at_s, f"{after.leader} leads", INK) for _, after in changes]
     room = _NAME_WIDTH * report.end_s
     free_from = {BAD: -room, INK: -room}
     for at_s, text, colour in sorted(turns):

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 from onehop.analysis.message_traces import MessageTrace
 from onehop.analysis.report.report_data import ReportData
 from onehop.contracts.messages import LeadershipTerm
+from onehop.contracts.printable import in_words, printable
 
 AFTER_S = 0.5
 """How long after the election its messages are followed [s]."""
@@ -47,7 +48,7 @@ def election_rows(report: ReportData, before: LeadershipTerm, after: LeadershipT
     start_s, end_s = _window(report, before, after)
     rows: dict[tuple[float, int, int], Row] = {}
     for trace in report.traces:
-        if start_s <= trace.offered_s <= end_s:
+        if start_s <= trace.offered_s <= end_s and trace.receiver in report.robots:
             row = rows.setdefault((trace.offered_s, trace.source, trace.number), Row(trace.offered_s))
             row.traces.append(trace)
     noted: dict[float, Row] = {}
@@ -92,17 +93,21 @@ def _notes(report: ReportData) -> Iterator[tuple[float, RowNote]]:
 
 
 def _note_text(kind: str, data: dict[str, Any]) -> str:
-    if kind == "lost_leader":
-        return f"gives up {data['leader']}"
-    if kind == "lost_follower":
-        return f"gives up {' '.join(map(str, data['robots']))}"
-    if kind == "elected":
-        return f"leads, epoch {data['epoch']}"
-    if kind == "yielded":
-        return f"obeys {data['leader']}"
-    if kind == "joined":
-        return f"takes in {' '.join(map(str, data['robots']))}"
-    return ""
+    verb, key = _NOTED.get(kind, ("", ""))
+    return f"{verb} {printable(in_words(data.get(key, '?')), _LONGEST)}" if verb else ""
+
+
+_NOTED = {
+    "lost_leader": ("gives up", "leader"),
+    "lost_follower": ("gives up", "robots"),
+    "elected": ("leads, epoch", "epoch"),
+    "yielded": ("obeys", "leader"),
+    "joined": ("takes in", "robots"),
+}
+"""Kind of note -> what the robot does, and the key that says whom it does it to."""
+
+_LONGEST = 40
+"""Letters of a value that find room in the chart."""
 
 
 def silences(rows: list[Row]) -> dict[int, float]:

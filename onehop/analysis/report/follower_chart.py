@@ -27,6 +27,9 @@ bit errors is lost once in 150 times by them."""
 
 _GRID_S = 0.5
 
+_SHARE = 0.01
+"""A threshold that fewer of all statuses name is not drawn: a robot can say another one every tick."""
+
 
 def follower_chart(report: ReportData) -> Figure:
     """Six panels over one time axis."""
@@ -194,8 +197,9 @@ def _of_next(report: ReportData, robot: int, value: Callable[..., float]) -> Ser
 def _draw_threshold(axes: Axes, report: ReportData) -> None:
     status = report.tables["status"]
     followers = status["leader"] != status["robot"]
-    thresholds = np.unique(status["threshold_bps"][followers & (status["threshold_bps"] > 0)])
-    for threshold in thresholds.tolist():
+    said = status["threshold_bps"][followers & (status["threshold_bps"] > 0)]
+    thresholds, counts = np.unique(said[np.isfinite(said)], return_counts=True)
+    for threshold in thresholds[counts >= _SHARE * len(said)].tolist():
         axes.axhline(threshold / 1e3, color=BAD, linewidth=1.2, linestyle=(0, (6, 3)), zorder=4)
         axes.annotate(
             f"threshold {threshold / 1e3:.0f}: below it the robot hurries", (1.0, threshold / 1e3),

@@ -9,6 +9,7 @@ from matplotlib.patches import Patch
 from onehop.analysis.palette import BAD, FAINT, INK
 from onehop.analysis.report.report_data import ReportData
 from onehop.analysis.timeline import Span, spans
+from onehop.contracts.printable import printable
 from onehop.contracts.team import Mode
 
 SHORTEST_S = 1.0
@@ -49,13 +50,12 @@ def mode_chart(report: ReportData) -> Figure:
         _draw_modes(axes, report, robot, place[robot], seen)
     _draw_leaders(axes, report, rows)
     for lane, content in enumerate(lanes):
-        for span in content:
-            _draw_band(axes, span, rows + 2 + lane, "#F3D6D6", BAD)
+        _draw_bands(axes, content, rows + 2 + lane, "#F3D6D6", BAD)
     for one in report.gone:
         axes.plot(one.at_s, place[one.robot], marker="X", color=BAD, markersize=9, zorder=5)
         axes.annotate(
-            one.why, (one.at_s, place[one.robot]), textcoords="offset points", xytext=(8, -3),
-            fontsize=8, color=BAD, zorder=6,
+            printable(one.why, 80), (one.at_s, place[one.robot]), textcoords="offset points",
+            xytext=(8, -3), fontsize=8, color=BAD, zorder=6,
         )  # fmt: skip
     _label(axes, report, rows, top)
     _explain_looks(figure, report, seen)
@@ -112,24 +112,27 @@ def _draw_leaders(axes: Axes, report: ReportData, rows: int) -> None:
                 merged[-1] = Span(merged[-1].start_s, end_s, name)
             else:
                 merged.append(Span(start_s, end_s, name))
-        for span in merged:
+        for name in sorted({span.what for span in merged}):
             leading = row == rows
-            face = report.colours[int(span.what)] if leading else "#E9E6DF"
-            _draw_band(axes, span, row, face, "white" if leading else INK)
+            face = report.colours[int(name)] if leading else "#E9E6DF"
+            own = [span for span in merged if span.what == name]
+            _draw_bands(axes, own, row, face, "white" if leading else INK)
 
 
-def _draw_band(axes: Axes, span: Span, row: float, face: str, ink: str) -> None:
-    length = max(span.end_s - span.start_s, 0.2)
+def _draw_bands(axes: Axes, bands: list[Span], row: float, face: str, ink: str) -> None:
+    """Bands of one look; each with its name, if there is room for it."""
+    ranges = [(span.start_s, max(span.end_s - span.start_s, 0.2)) for span in bands]
     axes.broken_barh(
-        [(span.start_s, length)], (row - _HEIGHT / 2, _HEIGHT), facecolor=face, edgecolor="white",
-        linewidth=0.8, zorder=3,
-    )  # fmt: skip
-    room = length / (_LETTER * axes.get_xlim()[1])
-    name = next((text for text in (span.what, span.what.split(" at ")[0]) if len(text) <= room), "")
-    axes.text(
-        span.start_s + length / 2, row, name, ha="center", va="center", fontsize=8, color=ink,
-        clip_on=True, zorder=4, fontweight="bold" if ink == "white" else "normal",
-    )  # fmt: skip
+        ranges, (row - _HEIGHT / 2, _HEIGHT), facecolor=face, edgecolor="white", linewidth=0.8, zorder=3
+    )
+    for span, (start_s, length) in zip(bands, ranges, strict=True):
+        room = length / (_LETTER * axes.get_xlim()[1])
+        name = next((text for text in (span.what, span.what.split(" at ")[0]) if len(text) <= room), "")
+        if name:
+            axes.text(
+                start_s + length / 2, row, name, ha="center", va="center", fontsize=8, color=ink,
+                clip_on=True, zorder=4, fontweight="bold" if ink == "white" else "normal",
+            )  # fmt: skip
 
 
 def _label(axes: Axes, report: ReportData, rows: int, top: int) -> None:

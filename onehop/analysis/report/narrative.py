@@ -1,13 +1,21 @@
 """A mission told in sentences: what happened, when, and why, for somebody who was not there."""
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Iterator
 from itertools import groupby
 from typing import Any, NamedTuple
 
 from onehop.analysis.report.election_rows import elections
 from onehop.analysis.report.report_data import ReportData
 from onehop.contracts.messages import LeadershipTerm
+from onehop.contracts.printable import in_words, printable
 from onehop.contracts.team import loss_in_words
+
+MOST_NOTES = 50
+"""Notes of one robot and kind that are told."""
+
+MOST_HANDOVERS = 50
+"""Changes of the leader that are told."""
 
 _NAMED_LEADERS = 6
 """More leaders than this are only counted."""
@@ -67,12 +75,16 @@ def summary_sentence(report: ReportData) -> str:
     return f"{sentence}{counted}{': ' + lost if lost else ''}.{led}{reason}"
 
 
-def _ids(robots: Sequence[int]) -> str:
-    return ", ".join(map(str, robots))
+def _robots(robots: Any) -> str:
+    several = isinstance(robots, tuple) and len(robots) > 1
+    return f"robot{'s' if several else ''} {in_words(robots)}"
 
 
-def _robots(robots: Sequence[int]) -> str:
-    return f"robot{'s' if len(robots) > 1 else ''} {_ids(robots)}"
+class _Blanks(dict[str, str]):
+    """What fills the blanks of a sentence; a robot's note may lack what ours have."""
+
+    def __missing__(self, key: str) -> str:
+        return "?"
 
 
 def _beginning(report: ReportData) -> Iterator[NarrativeEvent]:
@@ -83,23 +95,36 @@ def _beginning(report: ReportData) -> Iterator[NarrativeEvent]:
             return
         yield NarrativeEvent(
             first.at_s, 1,
-            f"Robots {_ids(first.members)} gather around robot {first.leader}, the median of their ids, "
-            f"in a {first.shape}.",
+            f"Robots {in_words(first.members)} gather around robot {first.leader}, the median of their "
+            f"ids, in a {first.shape}.",
         )  # fmt: skip
 
 
 def _notes(report: ReportData) -> Iterator[NarrativeEvent]:
+    """What robots noted; of one that notes the same kind over and over, the first ones."""
+    told: Counter[tuple[int, str]] = Counter()
     for at_s, robot, kind, data in report.tables["notes"].rows("time_s", "robot", "kind", "data"):
-        if kind == "mode" and data.get("on") == "formed":
-            yield NarrativeEvent(
-                at_s, 1, f"The formation stands: robot {robot} sets off towards the goal."
-            )
-        elif kind in _SENTENCES:
-            weight, sentence = _SENTENCES[kind]
-            why = loss_in_words(data.get("reason", ""))
-            robots = _robots(data.get("robots", ()))
-            blanks = {**_plain(data), "robot": robot, "robots": robots, "why": why}
-            yield NarrativeEvent(at_s, weight, sentence.format_map(blanks))
+        event = _note(at_s, robot, kind, data)
+        if event is None:
+            continue
+        told[robot, kind] += 1
+        if told[robot, kind] <= MOST_NOTES:
+            yield event
+        elif told[robot, kind] == MOST_NOTES + 1:
+            yield NarrativeEvent(at_s, 0, f"Robot {robot} goes on with notes {printable(kind)!r}.")
+
+
+def _note(at_s: float, robot: int, kind: str, data: dict[str, Any]) -> NarrativeEvent | None:
+    if kind == "mode" and data.get("on") == "formed":
+        return NarrativeEvent(at_s, 1, f"The formation stands: robot {robot} sets off towards the goal.")
+    if kind not in _SENTENCES:
+        return None
+    weight, sentence = _SENTENCES[kind]
+    blanks = _Blanks((key, in_words(value)) for key, value in data.items())
+    blanks["robot"] = str(robot)
+    blanks["robots"] = _robots(data.get("robots", ()))
+    blanks["why"] = loss_in_words(in_words(data.get("reason", "")))
+    return NarrativeEvent(at_s, weight, sentence.format_map(blanks))
 
 
 _SENTENCES = {
@@ -111,17 +136,6 @@ _SENTENCES = {
     "no_way": (2, "Robot {robot} finds no way on."),
 }
 """Kind of note -> weight and sentence; the robot's own data fill the blanks."""
-
-
-def _plain(data: dict[str, Any]) -> dict[str, str]:
-    return {
-        key: _ids(value)
-        if isinstance(value, list)
-        else f"{value:.1f}"
-        if isinstance(value, float)
-        else str(value)
-        for key, value in data.items()
-    }
 
 
 def _columns(report: ReportData) -> Iterator[NarrativeEvent]:
@@ -143,23 +157,24 @@ def _column(at_s: float, leader: int, until: str) -> NarrativeEvent:
 def _losses_of_leaders(report: ReportData) -> Iterator[NarrativeEvent]:
     """Lost_Leader of several robots within a Next period is one event; the election follows from it."""
     period = report.log.scenario.team.next_period
-    open_group: tuple[float, int, list[int]] | None = None
+    open_group: tuple[float, str, list[int]] | None = None
     notes = report.tables["notes"]
     losses = notes.where(notes["kind"] == "lost_leader")
     for at_s, robot, data in losses.rows("time_s", "robot", "data"):
-        if open_group and data["leader"] == open_group[1] and at_s - open_group[0] <= period:
+        leader = in_words(data.get("leader", "?"))
+        if open_group and leader == open_group[1] and at_s - open_group[0] <= period:
             open_group[2].append(robot)
             continue
         if open_group:
             yield _lost_leader(report, *open_group)
-        open_group = at_s, data["leader"], [robot]
+        open_group = at_s, leader, [robot]
     if open_group:
         yield _lost_leader(report, *open_group)
 
 
-def _lost_leader(report: ReportData, at_s: float, leader: int, robots: list[int]) -> NarrativeEvent:
+def _lost_leader(report: ReportData, at_s: float, leader: str, robots: list[int]) -> NarrativeEvent:
     team = report.log.scenario.team
-    who = f"Robots {_ids(sorted(robots))} have" if len(robots) > 1 else f"Robot {robots[0]} has"
+    who = f"Robots {in_words(sorted(robots))} have" if len(robots) > 1 else f"Robot {robots[0]} has"
     silence = f"not heard leader {leader} for {team.leader_timeout:g} s"
     text = f"{who} {silence} and give{'s' if len(robots) == 1 else ''} it up"
     successor = _successor(report.terms, at_s, leader)
@@ -170,28 +185,29 @@ def _lost_leader(report: ReportData, at_s: float, leader: int, robots: list[int]
     return NarrativeEvent(
         at_s, 2,
         f"{text}. Each strikes it from the roster and finds, without a vote, the same leader, "
-        f"robot {successor.leader}, median of {_ids(successor.members)}, and shape, {successor.shape}.",
+        f"robot {successor.leader}, median of {in_words(successor.members)}, and shape, "
+        f"{successor.shape}.",
     )  # fmt: skip
 
 
-def _successor(terms: list[LeadershipTerm], at_s: float, leader: int) -> LeadershipTerm | None:
-    later = (t for t in terms if at_s - 1e-6 <= t.at_s <= at_s + 1.0 and t.leader != leader)
+def _successor(terms: list[LeadershipTerm], at_s: float, leader: str) -> LeadershipTerm | None:
+    later = (t for t in terms if at_s - 1e-6 <= t.at_s <= at_s + 1.0 and str(t.leader) != leader)
     return next(later, None)
 
 
 def _handovers(report: ReportData) -> Iterator[NarrativeEvent]:
     """Changes of the leader without a loss of the old one: a new roster has another median."""
     lost = [
-        (at_s, data["leader"])
+        (at_s, data.get("leader"))
         for at_s, kind, data in report.tables["notes"].rows("time_s", "kind", "data")
         if kind == "lost_leader"
     ]
-    for before, after in elections(report):
+    for before, after in elections(report)[:MOST_HANDOVERS]:
         if any(who == before.leader and 0.0 <= after.at_s - at_s <= 1.0 for at_s, who in lost):
             continue
         yield NarrativeEvent(
             after.at_s, 2,
-            f"Robot {after.leader}, median of {_ids(after.members)}, leads from now on; "
+            f"Robot {after.leader}, median of {in_words(after.members)}, leads from now on; "
             f"shape: {after.shape}.",
         )  # fmt: skip
 

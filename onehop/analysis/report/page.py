@@ -6,12 +6,15 @@ import json
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
+
 from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, GOOD
 from onehop.analysis.report.narrative import NarrativeEvent, narrative, summary_sentence
 from onehop.analysis.report.pictures import Picture, draw_pictures
 from onehop.analysis.report.report_data import ReportData, gather
 from onehop.analysis.report.team_table import team_table
+from onehop.contracts.printable import printable
 from onehop.wire.codec import as_map
 
 _CSS = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
@@ -32,21 +35,35 @@ _GLOSSARY = {
 }
 
 
+_LONGEST = 2000
+"""Letters of one text on the page."""
+
+
 class Written(NamedTuple):
-    """Files of a report: the page, and each figure as PNG; its SVG has the same stem."""
+    """Files of a report: the page, and each figure as PNG; its SVG has the same stem.
+
+    flaws: why the log is not all that was said in the mission (audit.py).
+    """
 
     page: Path
     figures: tuple[Path, ...]
+    flaws: list[str]
+
+
+def _text(text: str) -> str:
+    """Text as HTML shows it, whoever said it."""
+    return html.escape(printable(text, _LONGEST))
 
 
 def write_report(log: Log, folder: Path) -> Written:
     """Write report.html and the figures into a folder. Raises LogError."""
     folder.mkdir(parents=True, exist_ok=True)
     report = gather(log)
-    pictures = draw_pictures(report, folder)
     page = folder / "report.html"
-    page.write_text(_page(report, pictures), encoding="utf-8")
-    return Written(page, tuple(picture.path for picture in pictures))
+    with np.errstate(over="ignore", invalid="ignore"):  # a robot may have said numbers beyond all sums
+        pictures = draw_pictures(report, folder)
+        page.write_text(_page(report, pictures), encoding="utf-8")
+    return Written(page, tuple(picture.path for picture in pictures), report.flaws)
 
 
 def _page(report: ReportData, pictures: list[Picture]) -> str:
@@ -57,11 +74,12 @@ def _page(report: ReportData, pictures: list[Picture]) -> str:
     return f"""<!doctype html>
 <html lang="en">
 <head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
-<title>{html.escape(scenario.name)}: {outcome}</title><style>{_CSS}</style></head>
+<title>{_text(scenario.name)}: {outcome}</title><style>{_CSS}</style></head>
 <body>
-<h1>{html.escape(scenario.name)}
+<h1>{_text(scenario.name)}
 <span class="outcome" style="background:{colour}">{outcome}</span></h1>
-<p class="lead">{html.escape(summary_sentence(report))}</p>
+<p class="lead">{_text(summary_sentence(report))}</p>
+{_flaws(report)}
 <h2>What happened</h2>
 {_narrative_table(narrative(report))}
 <h2>The team</h2>
@@ -77,18 +95,22 @@ def _page(report: ReportData, pictures: list[Picture]) -> str:
 """
 
 
+def _flaws(report: ReportData) -> str:
+    if not report.flaws:
+        return ""
+    return f'<p class="lead">The log is not all that was recorded: {_text("; ".join(report.flaws))}.</p>'
+
+
 def _glossary() -> str:
-    entries = "".join(
-        f"<dt>{word}</dt><dd>{html.escape(meaning)}</dd>" for word, meaning in _GLOSSARY.items()
-    )
+    entries = "".join(f"<dt>{word}</dt><dd>{_text(meaning)}</dd>" for word, meaning in _GLOSSARY.items())
     return f"<dl>{entries}</dl>"
 
 
 def _section(picture: Picture) -> str:
     data = base64.b64encode(picture.path.read_bytes()).decode()
-    title = html.escape(picture.title)
+    title = _text(picture.title)
     return (
-        f'<h2>{title}</h2><p class="note">{html.escape(picture.note)}</p>'
+        f'<h2>{title}</h2><p class="note">{_text(picture.note)}</p>'
         f'<img alt="{title}" src="data:image/png;base64,{data}">'
     )
 
@@ -96,7 +118,7 @@ def _section(picture: Picture) -> str:
 def _narrative_table(events: list[NarrativeEvent]) -> str:
     rows = "".join(
         f'<tr class="{"turn" if event.weight > 1 else ""}"><td class="time">{event.at_s:.1f} s</td>'
-        f'<td class="text">{html.escape(event.text)}</td></tr>'
+        f'<td class="text">{_text(event.text)}</td></tr>'
         for event in events
     )
     return f"<table>{rows}</table>"
@@ -114,6 +136,6 @@ def _run_table(report: ReportData) -> str:
         "made by": f"onehop {log.metadata.get('onehop', '?')}, numpy {log.metadata.get('numpy', '?')}",
     }
     return "<table>" + "".join(
-        f'<tr><th class="text">{name}</th><td class="text">{html.escape(str(value))}</td></tr>'
+        f'<tr><th class="text">{name}</th><td class="text">{_text(str(value))}</td></tr>'
         for name, value in rows.items()
     ) + "</table>"  # fmt: skip

@@ -1,4 +1,4 @@
-"""Everything that the report draws from, read from the log in one pass."""
+"""Everything that the report draws from."""
 
 from dataclasses import dataclass
 
@@ -8,6 +8,7 @@ from onehop.analysis.palette import robot_colours
 from onehop.analysis.tables import Table
 from onehop.analysis.timeline import LastSeen, Span, departures, fault_spans, leadership
 from onehop.contracts.messages import LeadershipTerm
+from onehop.wire.audit import audit
 
 _TABLES = (
     "poses", "status", "notes", "verdicts", "transmit_requests", "control", "contacts", "departures",
@@ -20,7 +21,7 @@ class ReportData:
     """One mission, taken apart.
 
     gone: everyone who left. terms: every leadership term. main_terms: of those, who led most of the
-    team. end_s: time of the last tick in the log [s].
+    team. end_s: time of the last tick in the log [s]. flaws: why the log is not all that was said.
     """
 
     log: Log
@@ -33,6 +34,7 @@ class ReportData:
     traces: list[MessageTrace]
     period_s: float
     end_s: float
+    flaws: list[str]
 
     @property
     def robots(self) -> tuple[int, ...]:
@@ -48,7 +50,10 @@ class ReportData:
 
 
 def gather(log: Log) -> ReportData:
-    """Read a log. Raises LogError when it is damaged."""
+    """Read a log, once for its tables and once to hold it against its digest.
+
+    Raises LogError when it is damaged.
+    """
     tables = log.tables(*_TABLES)
     period_s = log.period_ns / 1e9
     poses = tables["poses"]
@@ -61,7 +66,8 @@ def gather(log: Log) -> ReportData:
         terms=led.terms,
         main_terms=led.main,
         faults=fault_spans(tables, period_s),
-        traces=list(join(tables["verdicts"], tables["transmit_requests"])),
+        traces=list(join(tables["verdicts"], tables["transmit_requests"], log.period_ns)),
         period_s=period_s,
         end_s=float(poses["time_s"][-1]) if len(poses) else 0.0,
+        flaws=audit(log.file),
     )

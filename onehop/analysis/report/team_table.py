@@ -6,6 +6,7 @@ import numpy as np
 
 from onehop.analysis.report.radio_chart import losses
 from onehop.analysis.report.report_data import ReportData
+from onehop.contracts.printable import printable
 
 
 def team_table(report: ReportData) -> str:
@@ -42,7 +43,7 @@ def _team_row(report: ReportData, robot: int) -> str:
     numbers = "".join(f"<td>{cell}</td>" for cell in cells)
     chip = f'<span class="chip" style="background:{report.colours[robot]}"></span>'
     label = f"<s>robot {name}</s>" if dead else f"robot {name}"
-    outcome = html.escape(_outcome(report, robot))
+    outcome = html.escape(printable(_outcome(report, robot)))
     return (
         f'<tr class="{"dead" if dead else ""}"><td class="text name">{chip}{label}</td>'
         f'<td class="text">{outcome}</td>{numbers}</tr>'

@@ -7,11 +7,9 @@ log time of its tick.
 import math
 from typing import Any
 
-import msgpack
 import numpy as np
-from mcap.records import Message
+from mcap.writer import Writer
 
-from onehop.analysis.copying import LogCopy
 from onehop.analysis.log import Log
 from onehop.analysis.palette import robot_colours
 from onehop.analysis.view import points, scene
@@ -19,10 +17,16 @@ from onehop.analysis.view.schemas import Log as TextLog
 from onehop.analysis.view.schemas import schema_of
 from onehop.contracts import topics
 from onehop.contracts.beams import Beams
+from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
+from onehop.contracts.messages import Action, Inbox, Note, Observation, Truth
+from onehop.contracts.printable import printable
 from onehop.contracts.topics import robot_name
 from onehop.maps.map_file import load_map
+from onehop.wire.log_reader import LoggedTick
 from onehop.wire.log_writer import LOG_EPOCH_NS
+from onehop.wire.logged import value_of
+from onehop.wire.selection import Selected
 
 POSE_S, SCAN_S, LINK_S, BODY_S = 0.1, 0.2, 0.5, 5.0
 """Simulated time between two messages of a kind [s]. A body moves with its frame; it is sent again for
@@ -31,7 +35,9 @@ those who start to look in the middle."""
 WALL_STEP = 0.25
 """Distance between two points of a wall [m]."""
 
-_WIRE = topics.wire("")
+MOST_EVENTS = 100
+"""Notes of one robot and tick that are shown: a team has a few."""
+
 _LEVELS = {
     "lost_leader": TextLog.WARNING,
     "lost_follower": TextLog.WARNING,
@@ -45,9 +51,9 @@ _LEVELS = {
 class ViewerChannels:
     """Turns the wire messages of each tick into viewer messages."""
 
-    def __init__(self, log: Log, copy: LogCopy) -> None:
+    def __init__(self, log: Log, writer: Writer) -> None:
         scenario = log.scenario
-        self._copy = copy
+        self._writer = writer
         self._period_ns = log.period_ns
         self._strides = {
             s: max(1, round(s * 1e9 / log.period_ns)) for s in (POSE_S, SCAN_S, LINK_S, BODY_S)
@@ -67,18 +73,14 @@ class ViewerChannels:
         self._present: frozenset[int] = frozenset()
         self.counts: dict[str, int] = {}
 
-    def add(self, tick: int, messages: list[Message]) -> None:
-        """The wire messages of one tick, complete."""
-        wire = {
-            self._copy.keys[message.channel_id].removeprefix(_WIRE): message.data for message in messages
-        }
+    def add(self, logged: LoggedTick) -> None:
+        """The wire messages of one tick. Raises DecodeError for one that cannot have been recorded."""
+        tick = logged.tick
+        wire = {key: Selected(tick, key, data) for key, data in logged.messages}
         if topics.TRUTH not in wire:
             return
-        truth = msgpack.unpackb(wire[topics.TRUTH])
-        poses = {
-            one["robot"]: Pose(one["pose"]["x"], one["pose"]["y"], one["pose"]["heading"])
-            for one in truth["present"]
-        }
+        truth = value_of(Truth, wire[topics.TRUTH])
+        poses = self._poses(truth)
         stamp = LOG_EPOCH_NS + tick * self._period_ns
         if not self._channels:
             outline = points.wall_points(self._walls, WALL_STEP)
@@ -89,7 +91,7 @@ class ViewerChannels:
         if tick % self._strides[SCAN_S] == 0:
             self._add_scans(tick, stamp, wire, poses)
         actions = {
-            robot: msgpack.unpackb(wire[topics.out(robot)])
+            robot: value_of(Action, wire[topics.out(robot)])
             for robot in poses
             if topics.out(robot) in wire
         }
@@ -97,25 +99,32 @@ class ViewerChannels:
             self._add_links(tick, stamp, actions, poses)
         self._add_events(tick, stamp, actions, truth)
 
+    def _poses(self, truth: Truth) -> dict[int, Pose]:
+        for one in truth.present:
+            numbers = (one.pose.x, one.pose.y, one.pose.heading)
+            if one.robot not in self._colours or not all(map(math.isfinite, numbers)):
+                raise DecodeError(f"tick {truth.tick}, truth: no robot of the team is there")
+        return {one.robot: one.pose for one in truth.present}
+
     def _put(self, topic: str, tick: int, message: Any) -> None:
         channel = self._channels.get(topic)
         if channel is None:
             name, data = schema_of(type(message))
             if name not in self._schemas:
-                self._schemas[name] = self._copy.writer.register_schema(name, "protobuf", data)
-            channel = self._copy.writer.register_channel(topic, "protobuf", self._schemas[name])
+                self._schemas[name] = self._writer.register_schema(name, "protobuf", data)
+            channel = self._writer.register_channel(topic, "protobuf", self._schemas[name])
             self._channels[topic] = channel
         stamp = LOG_EPOCH_NS + tick * self._period_ns
-        self._copy.writer.add_message(channel, stamp, message.SerializeToString(), stamp, tick)
+        self._writer.add_message(channel, stamp, message.SerializeToString(), stamp, tick)
         self.counts[topic] = self.counts.get(topic, 0) + 1
 
-    def _hear(self, wire: dict[str, bytes], poses: dict[int, Pose]) -> None:
+    def _hear(self, wire: dict[str, Selected], poses: dict[int, Pose]) -> None:
         """Remember SNR and bit error rate of the last message that each robot received."""
         for robot in poses:
-            data = wire.get(topics.rx(robot))
-            if data is not None:
-                for one in msgpack.unpackb(data)["receptions"]:
-                    self._heard[robot] = one["snr_db"], one["bit_error_rate"]
+            message = wire.get(topics.rx(robot))
+            if message is not None:
+                for one in value_of(Inbox, message).receptions:
+                    self._heard[robot] = one.snr_db, one.bit_error_rate
 
     def _add_poses(self, tick: int, stamp: int, poses: dict[int, Pose]) -> None:
         present = frozenset(poses)
@@ -133,12 +142,16 @@ class ViewerChannels:
         rings = points.body_points(placed, self._shapes)
         self._put("/robots/points", tick, scene.cloud(stamp, scene.MAP, rings))
 
-    def _add_scans(self, tick: int, stamp: int, wire: dict[str, bytes], poses: dict[int, Pose]) -> None:
+    def _add_scans(
+        self, tick: int, stamp: int, wire: dict[str, Selected], poses: dict[int, Pose]
+    ) -> None:
         for robot in sorted(poses):
-            data = wire.get(topics.obs(robot))
-            if data is None:
+            message = wire.get(topics.obs(robot))
+            if message is None:
                 continue
-            ranges = np.frombuffer(msgpack.unpackb(data)["scan"], dtype="<f4")
+            ranges = value_of(Observation, message).scan
+            if len(ranges) != len(self._angles):
+                raise DecodeError(f"tick {tick}, {message.key}: a scan of {len(ranges)} beams")
             name = robot_name(robot)
             self._put(
                 f"/{name}/scan_points",
@@ -147,38 +160,40 @@ class ViewerChannels:
             )
             self._put(f"/{name}/scan", tick, scene.laser_scan(stamp, robot, ranges, self._angles))
 
-    def _add_links(self, tick: int, stamp: int, actions: dict[int, Any], poses: dict[int, Pose]) -> None:
+    def _add_links(
+        self, tick: int, stamp: int, actions: dict[int, Action], poses: dict[int, Pose]
+    ) -> None:
         links = []
         for robot, action in sorted(actions.items()):
-            status = action["status"]
-            leader = poses.get(status["leader"])
-            if leader is None or status["leader"] == robot:
+            status = action.status
+            leader = poses.get(status.leader)
+            if leader is None or status.leader == robot:
                 continue
             pose = poses[robot]
             snr_db, bit_error_rate = self._heard.get(robot, (math.nan, math.nan))
             message = scene.link(
-                stamp, throughput_bps=status["throughput_bps"], threshold_bps=status["threshold_bps"],
-                snr_db=snr_db, bit_error_rate=bit_error_rate, k_rho_per_s=status["k_rho"],
-                error_m=status["error"], distance_m=math.hypot(pose.x - leader.x, pose.y - leader.y),
+                stamp, throughput_bps=status.throughput_bps, threshold_bps=status.threshold_bps,
+                snr_db=snr_db, bit_error_rate=bit_error_rate, k_rho_per_s=status.k_rho,
+                error_m=status.error, distance_m=math.hypot(pose.x - leader.x, pose.y - leader.y),
             )  # fmt: skip
             self._put(f"/{robot_name(robot)}/link", tick, message)
-            best = 2.0 * status["threshold_bps"]
-            links.append((leader, pose, status["throughput_bps"] / best if best > 0 else 1.0))
+            best = 2.0 * status.threshold_bps
+            links.append((leader, pose, status.throughput_bps / best if best > 0 else 1.0))
         self._put("/links/points", tick, scene.cloud(stamp, scene.MAP, points.link_points(links)))
 
-    def _add_events(self, tick: int, stamp: int, actions: dict[int, Any], truth: Any) -> None:
-        for one in truth["departures"]:
-            text = f"gone, {one['why']}"
-            self._put("/events", tick, scene.event(stamp, one["robot"], text, TextLog.WARNING))
+    def _add_events(self, tick: int, stamp: int, actions: dict[int, Action], truth: Truth) -> None:
+        for one in truth.departures:
+            text = printable(f"gone, {one.why}")
+            self._put("/events", tick, scene.event(stamp, one.robot, text, TextLog.WARNING))
         for robot, action in sorted(actions.items()):
-            for note in action["notes"]:
-                level = _LEVELS.get(note["kind"], TextLog.INFO)
+            for note in action.notes[:MOST_EVENTS]:
+                level = _LEVELS.get(note.kind, TextLog.INFO)
                 self._put("/events", tick, scene.event(stamp, robot, _text(note), level))
 
 
-def _text(note: dict[str, Any]) -> str:
+def _text(note: Note) -> str:
     details = ", ".join(
         f"{key} {value:.2f}" if isinstance(value, float) else f"{key} {value}"
-        for key, value in note["data"].items()
+        for key, value in note.data.items()
     )
-    return f"{note['kind'].replace('_', ' ')}{': ' if details else ''}{details}"
+    return printable(f"{note.kind.replace('_', ' ')}{': ' if details else ''}{details}")

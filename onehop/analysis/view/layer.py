@@ -3,64 +3,57 @@
 A layer that is there already is replaced.
 """
 
-import struct
-from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
-
-from mcap.exceptions import EndOfFile
-from mcap.records import Channel, Message, Metadata, Schema
-from mcap.stream_reader import StreamReader
 
 from onehop.analysis.copying import LogCopy
 from onehop.analysis.log import Log
 from onehop.analysis.view.channels import ViewerChannels
 from onehop.contracts import topics
+from onehop.contracts.errors import DecodeError
+from onehop.wire.audit import Audit
+from onehop.wire.log_reader import LoggedTick, forged
+from onehop.wire.log_writer import LOG_EPOCH_NS
 
-_WIRE = topics.wire("")
 
+def write_view(log: Log, out: Path) -> tuple[dict[str, int], list[str]]:
+    """Write log and viewer layer to `out`, which may be the log itself.
 
-def write_view(log: Log, out: Path) -> dict[str, int]:
-    """Write log and viewer layer to `out`, which may be the log itself; returns messages by topic.
-
-    Whatever the log was, the copy is sound.
+    Returns viewer messages by topic, and the flaws of the log (audit.py), which the copy has too. Raises
+    LogError when the log is damaged.
     """
-    with LogCopy(out, "with viewer layer") as copy:
-        layer = ViewerChannels(log, copy)
-        _copy_with(layer, log, copy)
-        copy.finish()
-    return dict(sorted(layer.counts.items()))
-
-
-def _copy_with(layer: ViewerChannels, log: Log, copy: LogCopy) -> None:
-    """Everything of the log but an old layer, and after each tick what the new layer makes of it."""
-    tick, messages = -1, list[Message]()
-    for record in _records(log.path):
-        if isinstance(record, Message):
-            if record.channel_id not in copy.keys:
-                continue
-            if record.sequence != tick:
-                layer.add(tick, messages)
-                tick, messages = record.sequence, []
-            messages.append(record)
-            copy.take_message(record)
-        elif not _is_viewers(record):
-            if isinstance(record, Metadata) and record.name == "outcome":
-                layer.add(tick, messages)
-                messages = []
-            copy.take(record)
-    layer.add(tick, messages)
-
-
-def _records(path: Path) -> Iterator[Any]:
-    with path.open("rb") as stream:
+    audit = Audit(log.file)
+    with LogCopy(out, "with viewer layer") as copy, log.path.open("rb") as stream:
+        copy.take_apart(stream, log.file.contents.apart)
+        layer = ViewerChannels(log, copy.writer)
+        wire = _WireChannels(copy, log.period_ns)
         try:
-            yield from StreamReader(stream, validate_crcs=True).records
-        except (EndOfFile, struct.error):  # the latter where an index is torn
-            return
+            for tick in audit.ticks():
+                wire.add(tick)
+                layer.add(tick)
+        except DecodeError as error:
+            raise forged(log.path, error) from None
+        copy.finish()
+    return dict(sorted(layer.counts.items())), audit.flaws
 
 
-def _is_viewers(record: Any) -> bool:
-    return isinstance(record, Schema) or (
-        isinstance(record, Channel) and not record.topic.startswith(_WIRE)
-    )
+class _WireChannels:
+    """Copies the wire messages of each tick."""
+
+    def __init__(self, copy: LogCopy, period_ns: int) -> None:
+        self._copy = copy
+        self._writer = copy.writer
+        self._period_ns = period_ns
+        self._channels: dict[str, int] = {}
+        self._last_tick = -1
+
+    def add(self, tick: LoggedTick) -> None:
+        if tick.tick != self._last_tick + 1:
+            self._copy.settle()
+        self._last_tick = tick.tick
+        stamp = LOG_EPOCH_NS + tick.tick * self._period_ns
+        for key, data in tick.messages:
+            channel = self._channels.get(key)
+            if channel is None:
+                channel = self._writer.register_channel(topics.wire(key), "msgpack", 0)
+                self._channels[key] = channel
+            self._writer.add_message(channel, stamp, data, stamp, tick.tick)

@@ -84,8 +84,8 @@ def test_a_missing_message_is_a_difference(log: Log, log_path: Path, tmp_path: P
 def test_a_shorter_log_differs_where_it_ends(log: Log, log_path: Path, tmp_path: Path) -> None:
     found = compare(log, rewritten(log_path, tmp_path / "b.mcap", lambda t, _, d: d if t < 30 else None))
     assert found.first is not None
-    assert (found.first.tick, found.first.field) == (30, "end of the log")
-    assert (found.first.a, found.first.b) == ("goes on", None)
+    assert (found.first.tick, found.first.field) == (30, "tick")
+    assert (found.first.a, found.first.b) == ("present", None)
 
 
 def test_a_setting_that_differs_is_named_beside_the_messages(

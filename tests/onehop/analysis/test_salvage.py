@@ -1,31 +1,32 @@
 """A torn log wherever it is torn: a sound file, whole ticks, nothing missing before the last."""
 
 from pathlib import Path
+from random import Random
 
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from mcap.opcode import Opcode
 
 from onehop.analysis import Log, open_log
 from onehop.analysis.salvage import salvage
 from onehop.contracts.errors import LogError
 from onehop.wire.log_reader import LogFile, LoggedTick
 from onehop.wire.log_writer import LogWriter
-from onehop.wire.selection import walk
+from tests.onehop.log_forms import CHUNK_DAMAGES, FORMS, Form, chunks, ticks_of, write_form
+
+from .conftest import LEADER
 
 
 def ticks(path: Path) -> list[LoggedTick]:
     return list(LogFile(path).ticks())
 
 
-def head_size(path: Path) -> int:
-    """Bytes before the first chunk: without them no log can be told from any other file."""
-    with path.open("rb") as stream:
-        for opcode, _ in walk(stream):
-            if opcode == Opcode.CHUNK:
-                return stream.tell() - 9
-    raise AssertionError("a log without a chunk")
+@pytest.fixture
+def flushed(log_path: Path, tmp_path: Path) -> Path:
+    """The log of the small mission in chunks of three ticks."""
+    path = tmp_path / "flushed.mcap"
+    write_form(log_path, path, Form(), ticks_of(log_path))
+    return path
 
 
 @pytest.mark.slow
@@ -35,14 +36,14 @@ def test_a_log_torn_anywhere_gives_a_prefix_of_whole_ticks(
     log_path: Path, tmp_path: Path, share: float
 ) -> None:
     data = log_path.read_bytes()
-    first = head_size(log_path)
+    first = len(chunks(data, tmp_path / "scratch")[0])
     torn, saved = tmp_path / "torn.mcap", tmp_path / "saved.mcap"
     torn.write_bytes(data[: first + int(share * (len(data) - first))])
     result = salvage(torn, saved)
     whole = ticks(log_path)
     assert not open_log(saved).torn
     assert ticks(saved) == whole[: result.last_tick + 1]
-    assert result.damage
+    assert bool(result.damage) == open_log(torn).torn
     assert result.messages == sum(len(tick.messages) for tick in whole[: result.last_tick + 1])
 
 
@@ -71,23 +72,109 @@ def test_an_unfinished_tick_is_given_up_and_counted(log_path: Path, tmp_path: Pa
     assert ticks(saved) == [first]
 
 
-def test_a_damaged_log_is_saved_up_to_the_damage(log_path: Path, tmp_path: Path) -> None:
-    data = bytearray(log_path.read_bytes())
-    data[len(data) // 2] ^= 0xFF
+def _damaged(source: Path, target: Path, number: int, at: int) -> None:
+    """A log with another byte in its chunk of this number."""
+    parts = chunks(source.read_bytes(), target)
+    chunk = bytearray(parts[1 + number])
+    chunk[at] ^= 0xFF
+    parts[1 + number] = bytes(chunk)
+    target.write_bytes(b"".join(parts))
+
+
+@pytest.mark.parametrize("at", [2, 5, 60], ids=["length", "beyond the file", "content"])
+def test_what_lies_behind_a_damaged_chunk_is_saved(flushed: Path, tmp_path: Path, at: int) -> None:
     broken, saved = tmp_path / "broken.mcap", tmp_path / "saved.mcap"
-    broken.write_bytes(data)
+    _damaged(flushed, broken, 5, at)
     result = salvage(broken, saved)
-    assert "damaged near byte" in result.damage
-    assert 0 < result.last_tick < len(ticks(log_path)) - 1
-    assert ticks(saved) == ticks(log_path)[: result.last_tick + 1]
+    whole = ticks(flushed)
+    assert ticks(saved) == [tick for tick in whole if tick.tick not in (13, 14, 15)]
+    assert len(result.damage) == 1
+    assert result.unread_bytes > 0
+    assert result.flaws == [f"ticks 13..15 are missing of {len(whole)}"]
+    assert open_log(saved).flaws == tuple(result.flaws)
+    assert result.ended
+
+
+def test_bytes_that_were_cut_out_cost_no_more_than_their_chunk(flushed: Path, tmp_path: Path) -> None:
+    head, *middle, tail = chunks(flushed.read_bytes(), tmp_path / "scratch")
+    middle[5] = middle[5][:200] + middle[5][900:]
+    cut, saved = tmp_path / "cut.mcap", tmp_path / "saved.mcap"
+    cut.write_bytes(b"".join((head, *middle, tail)))
+    salvage(cut, saved)
+    assert ticks(saved) == [tick for tick in ticks(flushed) if tick.tick not in (13, 14, 15)]
+
+
+def test_a_torn_log_with_a_damaged_chunk_gives_both_sides(flushed: Path, tmp_path: Path) -> None:
+    broken, torn, saved = (tmp_path / f"{name}.mcap" for name in ("broken", "torn", "saved"))
+    _damaged(flushed, broken, 5, 60)
+    torn.write_bytes(broken.read_bytes()[: broken.stat().st_size // 2])
+    result = salvage(torn, saved)
+    assert {tick.tick for tick in ticks(saved)} == {*range(result.last_tick + 1)} - {13, 14, 15}
+    assert result.flaws == ["ticks 13..15 are missing"]
+    assert not result.ended
+
+
+@pytest.mark.parametrize("damage", ["swapped", "doubled"])
+def test_chunks_are_put_in_their_order_and_saved_once(
+    flushed: Path, tmp_path: Path, damage: str
+) -> None:
+    mixed, saved = tmp_path / "mixed.mcap", tmp_path / "saved.mcap"
+    mixed.write_bytes(CHUNK_DAMAGES[damage](flushed.read_bytes(), Random(3), tmp_path / "scratch"))
+    result = salvage(mixed, saved)
+    assert ticks(saved) == ticks(flushed)
+    assert result.flaws == []
+    assert (result.copies > 0) == (damage == "doubled")
+
+
+def test_a_chunk_that_is_gone_is_missed(flushed: Path, tmp_path: Path) -> None:
+    head, *middle, tail = chunks(flushed.read_bytes(), tmp_path / "scratch")
+    short, saved = tmp_path / "short.mcap", tmp_path / "saved.mcap"
+    short.write_bytes(b"".join((head, *middle[:-1], tail)))
+    (flaw,) = salvage(short, saved).flaws
+    assert flaw.endswith(f"missing of {len(ticks(flushed))}")
+
+
+def test_a_tick_beside_the_damage_that_is_not_whole_is_given_up(flushed: Path, tmp_path: Path) -> None:
+    split, saved = tmp_path / "split.mcap", tmp_path / "saved.mcap"
+    kept = [(tick, messages[:-1] if tick == 30 else messages) for tick, messages in ticks_of(flushed)]
+    write_form(flushed, split, FORMS["no chunks"], kept)
+    data = split.read_bytes()
+    split.write_bytes(data[: int(0.6 * len(data))])
+    result = salvage(split, saved)
+    assert 30 not in {tick.tick for tick in ticks(saved)}
+    assert result.given_up >= len(dict(kept)[30])
+
+
+@pytest.mark.parametrize("form", FORMS.values(), ids=FORMS.keys())
+def test_a_log_of_any_form_is_saved(log_path: Path, tmp_path: Path, form: Form) -> None:
+    path, saved = tmp_path / "form.mcap", tmp_path / "saved.mcap"
+    write_form(log_path, path, form, ticks_of(log_path))
+    result = salvage(path, saved)
+    assert (result.flaws, result.damage, result.given_up) == ([], [], 0)
+    assert ticks(saved) == ticks(log_path)
 
 
 def test_a_sound_log_loses_nothing(log: Log, log_path: Path, tmp_path: Path) -> None:
     saved = tmp_path / "saved.mcap"
     result = salvage(log_path, saved)
-    assert (result.damage, result.given_up, result.unread_bytes, result.ended) == ("", 0, 0, True)
+    assert (result.damage, result.given_up, result.unread_bytes, result.ended) == ([], 0, 0, True)
+    assert result.flaws == []
     assert ticks(saved) == ticks(log_path)
     assert open_log(saved).summary == log.summary
+
+
+def test_a_log_with_a_robot_that_died_in_the_middle_is_saved_whole_beside_damage(
+    log: Log, flushed: Path, tmp_path: Path
+) -> None:
+    """A killed robot owes the action of its last tick, and that tick is whole all the same."""
+    died = int(log.table("departures")["tick"][0]) - 1
+    ticks = ticks_of(flushed)
+    ticks[died] = died, [(key, data) for key, data in ticks[died][1] if key != f"out/{LEADER}"]
+    path, broken, saved = (tmp_path / f"{name}.mcap" for name in ("died", "broken", "saved"))
+    write_form(flushed, path, Form(), ticks)
+    _damaged(path, broken, 2, 60)
+    salvage(broken, saved)
+    assert died in {tick.tick for tick in LogFile(saved).ticks()}
 
 
 def test_the_saved_log_carries_scenario_and_versions(log: Log, log_path: Path, tmp_path: Path) -> None:

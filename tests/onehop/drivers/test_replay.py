@@ -97,3 +97,5 @@ def test_a_first_difference_has_its_path_and_both_values() -> None:
     assert first_difference({"a": 1}, {"a": 1.0}) == ("a", 1, 1.0)
     assert first_difference({"a": 1}, {"a": True}) == ("a", 1, True)
     assert first_difference({"a": float("nan")}, {"a": float("nan")}) is None
+    assert first_difference({"a": float("nan")}, {"a": 1.0}) is not None
+    assert first_difference({"a": 1.0}, {"a": float("nan")}) is not None

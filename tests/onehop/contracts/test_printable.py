@@ -2,7 +2,7 @@
 
 import pytest
 
-from onehop.contracts.plain_text import plain
+from onehop.contracts.printable import printable
 
 
 @pytest.mark.parametrize(
@@ -16,4 +16,4 @@ from onehop.contracts.plain_text import plain
     ],
 )
 def test_what_does_not_print_is_escaped(said: str, shown: str) -> None:
-    assert plain(said) == shown
+    assert printable(said) == shown
