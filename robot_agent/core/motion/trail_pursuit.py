@@ -117,7 +117,7 @@ class TrailPursuit:
         del way[:-MEMORY]
 
     def _in_sight(self, point: Point) -> bool:
-        """Whether the laser sees past a point in the robot's frame [m], and a robot could drive there."""
+        """Whether the laser sees past a point in the robot's frame [m], and it could drive there."""
         x, y = point
         distance = math.hypot(x, y)
         if x < 0.0 or distance > IN_SIGHT:
