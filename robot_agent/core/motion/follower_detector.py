@@ -20,8 +20,9 @@ import numpy.typing as npt
 from onehop.contracts import elementary
 from onehop.contracts.arrays import BoolArray, FloatArray, Ranges
 from onehop.contracts.beams import Beams
-from onehop.contracts.geometry import Pose, to_local
+from onehop.contracts.geometry import Pose
 from onehop.contracts.sections import RobotSection
+from robot_agent.core.motion.frames import frame_of
 from robot_agent.core.motion.trail import Point
 
 HULL_ERROR = 0.05
@@ -93,20 +94,20 @@ class FollowerDetector:
     def beams(self, pose: Pose, scan: Ranges, places: Sequence[Point], reach: float) -> BeamNumbers:
         """The beams that hit a robot within `reach` of one of the places [m], map frame."""
         sight = self._range + reach
-        own = [to_local(pose, x, y) for x, y in places]
-        own = [(x, y) for x, y in own if x > -reach and math.hypot(x, y) < sight]
-        if not own:
+        own = map(frame_of(pose), places)
+        near = [(x, y) for x, y in own if x > -reach and math.hypot(x, y) < sight]
+        if not near:
             return NO_BEAMS
         seen = np.flatnonzero(scan <= self._range)
         if not len(seen):
             return NO_BEAMS
         nearest = seen[self._nearest(scan)[seen]]
         centres = self._directions[nearest] * (scan[nearest, None] + self._radius)
-        possible = nearest[_apart(centres, np.array(own)) <= reach]
+        possible = nearest[_apart(centres, np.array(near)) <= reach]
         found = np.zeros(len(scan), dtype=np.bool_)
         found[self._discs(scan, possible)] = True
         hits = self._directions[seen] * scan[seen, None]
-        found[seen[_apart(hits, np.array(own)) <= self._radius + AT_HAND]] = True
+        found[seen[_apart(hits, np.array(near)) <= self._radius + AT_HAND]] = True
         return np.flatnonzero(found)
 
     def _nearest(self, scan: Ranges) -> BoolArray:

@@ -10,16 +10,16 @@ the arc is then still the one that the controller meant; the thesis has no limit
 
 import math
 from dataclasses import replace
-from typing import NamedTuple
 
 from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose, Twist, wrap_angle
 from onehop.contracts.sections import GainsSection, RobotSection
+from onehop.contracts.values import Value
 
 HALF_TURN = math.pi / 2.0
 
 
-class PolarError(NamedTuple):
+class PolarError(Value, frozen=True):
     """Where the target is: distance rho [m], bearing alpha, and heading still to turn beta [rad].
 
     reverse: the target is behind, alpha in (3.9), so that the robot would have to back up.

@@ -11,8 +11,9 @@ import math
 from collections.abc import Sequence
 
 from onehop.contracts import elementary
-from onehop.contracts.geometry import Pose, to_local
+from onehop.contracts.geometry import Pose
 from onehop.contracts.values import Value
+from robot_agent.core.motion.frames import frame_of
 from robot_agent.core.motion.free_directions import LOOKAHEAD, FreeDirections
 from robot_agent.core.motion.timing import in_ticks
 from robot_agent.core.motion.trail import Point
@@ -60,9 +61,9 @@ class TrailPursuit:
         """Remember the newest point in sight, or how to get back; whether one is in sight."""
         if trail is not self._heard:
             self._learn(trail)
-        here = (pose.x, pose.y)
+        here, local = (pose.x, pose.y), frame_of(pose)
         for place in range(len(self._way) - 1, -1, -1):
-            if self._in_sight(pose, self._way[place]):
+            if self._in_sight(local(self._way[place])):
                 del self._way[:place]
                 self._breadcrumbs, self._patience = [here], self._around_corner
                 return True
@@ -79,7 +80,7 @@ class TrailPursuit:
 
     def point(self, pose: Pose, trail: Sequence[Point], ticks: int) -> TrailPoint | None:
         """Where to head for; None without a trail. ticks: that count since this was asked last."""
-        in_sight = self.watch(pose, trail)
+        in_sight, local = self.watch(pose, trail), frame_of(pose)
         way = self._way
         if not way:
             return None
@@ -87,15 +88,16 @@ class TrailPursuit:
         if len(self._breadcrumbs) == 1 and self._patience < 0:
             self._patience = self._around_corner
         if self._patience < 0 and self._breadcrumbs:
-            seen = (crumb for crumb in self._breadcrumbs if self._in_sight(pose, crumb))
-            return self._from(pose, next(seen, self._breadcrumbs[-1]), newest=False, known=True)
+            seen = (crumb for crumb in self._breadcrumbs if self._in_sight(local(crumb)))
+            back = local(next(seen, self._breadcrumbs[-1]))
+            return _trail_point(back, newest=False, known=True)
         if not in_sight and not self._breadcrumbs:
             away = [math.dist((pose.x, pose.y), point) for point in way]
             del way[: away.index(min(away))]
         if not in_sight and len(way) > 1 and math.dist(way[0], (pose.x, pose.y)) < REACHED:
             del way[0]
         known = in_sight or bool(self._breadcrumbs)
-        return self._from(pose, way[0], newest=len(way) == 1, known=known)
+        return _trail_point(local(way[0]), newest=len(way) == 1, known=known)
 
     def _learn(self, trail: Sequence[Point]) -> None:
         """Add what is new in the leader's trail; a trail that has nothing in common is another one.
@@ -114,8 +116,9 @@ class TrailPursuit:
         way += trail[trail.index(newest) + 1 :]
         del way[:-MEMORY]
 
-    def _in_sight(self, pose: Pose, point: Point) -> bool:
-        x, y = to_local(pose, *point)
+    def _in_sight(self, point: Point) -> bool:
+        """Whether the laser sees past a point in the robot's frame [m], and it could drive there."""
+        x, y = point
         distance = math.hypot(x, y)
         if x < 0.0 or distance > IN_SIGHT:
             return False
@@ -123,6 +126,8 @@ class TrailPursuit:
         free = self._free.free_distance(bearing, tight=True)
         return free >= min(distance, LOOKAHEAD) and self._free.sees(bearing, distance)
 
-    def _from(self, pose: Pose, point: Point, newest: bool, known: bool) -> TrailPoint:
-        x, y = to_local(pose, *point)
-        return TrailPoint(math.hypot(x, y), elementary.atan2(y, x), newest, known)
+
+def _trail_point(point: Point, newest: bool, known: bool) -> TrailPoint:
+    """A point in the robot's frame [m] as what is headed for."""
+    x, y = point
+    return TrailPoint(math.hypot(x, y), elementary.atan2(y, x), newest, known)
