@@ -92,7 +92,7 @@ class Detour:
 
     def reset(self) -> None:
         """Forget the obstacle in the way."""
-        self.border, self._blocked_for, self._side = False, 0, 0
+        self.border, self._blocked_for, self._side, self._held = False, 0, 0, None
         self._jam.reset()
 
     def watch_trail(self, pose: Pose, scan: Ranges, trail: Sequence[Point]) -> None:
@@ -104,7 +104,7 @@ class Detour:
 
     def tracks(self) -> None:
         """The robot tracks its slot at this tick."""
-        self._since_look = ON_THE_SPOT
+        self._since_look, self._held = ON_THE_SPOT, None
         self._jam.clear()
 
     def held(self, pose: Pose) -> Twist | None:

@@ -90,3 +90,13 @@ def test_a_robot_that_turns_to_and_fro_beside_a_wall_escapes_with_any_period(per
         pose = moved(pose, Twist(0.0, twist.w), period)
         ticks += 1
     assert ticks * period < 10.0
+
+
+@pytest.mark.parametrize("period", [0.02, 0.05])
+@pytest.mark.parametrize("between", [Pose(0.0, 5.0, 0.0), HERE], ids=["tracking", "in its slot"])
+def test_a_course_is_not_taken_up_again_after_something_else(period, between):
+    """It was decided for an obstacle and a slot that may be gone for minutes."""
+    driver, wall = follower(period), block(-10, 30, 1.0)
+    assert driver.to_slot(HERE, wall, 1.0, task(Pose(5.0, 0.0, 0.0))).w < 0.0
+    driver.to_slot(HERE, OPEN, math.inf, task(between))
+    assert driver.to_slot(HERE, OPEN, 1.0, task(Pose(5.0, 3.0, 0.0))).w > 0.0
