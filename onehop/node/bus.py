@@ -9,6 +9,7 @@ Python callback costs a thread switch or two more for each message.
 No thread outlives its session: the pulse and the threads of Python callbacks end before it is closed.
 """
 
+import hashlib
 import json
 import os
 import secrets
@@ -24,6 +25,7 @@ import zenoh
 
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
+from onehop.node import unread
 from onehop.node.rights import access_control
 
 T = TypeVar("T")
@@ -55,6 +57,10 @@ ONE_THREAD = (
 )
 """Zenoh's own threads in each process: one. Its default of several costs 30 % more time a tick."""
 
+ROUTER_THREADS = ONE_THREAD.replace("acc: (handover: net)", "acc: (worker_threads: 1)")
+"""The router's: new connections have a thread of their own. To close one that never said who it is takes
+5 ms (SO_LINGER), in which the thread can do nothing else; strangers may open as many as they like."""
+
 _QUIET = {
     "scouting/multicast/enabled": False,
     "scouting/gossip/enabled": False,
@@ -67,6 +73,11 @@ _QUIET = {
 def make_credentials(names: Iterable[str]) -> dict[str, str]:
     """A fresh password for every name of a mission."""
     return {name: secrets.token_hex(16) for name in names}
+
+
+def _session_id(password: str) -> str:
+    """The id of the one session that may use a password: 16 bytes in hexadecimal, no zero in front."""
+    return "1" + hashlib.sha256(password.encode()).hexdigest()[:31]
 
 
 class Bus:
@@ -219,9 +230,10 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
         "listen/endpoints": [endpoint],
         "scouting/delay": 0,
         "transport/unicast/lowlatency": True,
+        **unread.SETTINGS,
     }
     if credentials is None:
-        return Bus(_open(settings), mission, topics.WORLD)
+        return Bus(_open_router(settings), mission, topics.WORLD)
     with tempfile.NamedTemporaryFile("w", prefix="onehop-") as dictionary:  # readable by its owner only
         dictionary.writelines(f"{name}:{word}\n" for name, word in credentials.items())
         dictionary.flush()
@@ -230,8 +242,15 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
             "password": secrets.token_hex(16),
             "dictionary_file": dictionary.name,
         }
-        settings["access_control"] = access_control(mission, credentials)
-        return Bus(_open(settings), mission, topics.WORLD)
+        sessions = {name: _session_id(word) for name, word in credentials.items()}
+        settings["access_control"] = access_control(mission, sessions)
+        return Bus(_open_router(settings), mission, topics.WORLD)
+
+
+def _open_router(settings: Mapping[str, Any]) -> zenoh.Session:
+    session = _open(settings)
+    unread.limit_unread(int(settings["listen/endpoints"][0].rpartition(":")[2]))
+    return session
 
 
 def open_client(
@@ -253,11 +272,12 @@ def open_client(
     }
     if password is not None:
         settings["transport/auth/usrpwd"] = {"user": name, "password": password}
+        settings["id"] = _session_id(password)
     return Bus(_open(settings), mission, name)
 
 
 def _open(settings: Mapping[str, Any]) -> zenoh.Session:
-    os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
+    os.environ.setdefault("ZENOH_RUNTIME", ROUTER_THREADS if settings["mode"] == "router" else ONE_THREAD)
     config = zenoh.Config()
     for key, value in {**_QUIET, "transport/link/tx/lease": LEASE_MS, **settings}.items():
         config.insert_json5(key, json.dumps(value))
