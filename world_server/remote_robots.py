@@ -5,13 +5,14 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from onehop.contracts import topics
+from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import Action, Truth
 from onehop.node.bus import Bus
 from onehop.wire.batch import pack_tick
 from onehop.wire.codec import decode
 from onehop.wire.journal import WireMessage
-from world_server.mailbox import Mailbox
+from world_server.mailbox import Mailbox, MissionBrokenError
 from world_server.roll_call import RollCall
 
 
@@ -34,6 +35,7 @@ class RemoteRobots:
     def __init__(
         self, bus: Bus, mail: Mailbox, roll: RollCall, robots: tuple[int, ...], silence_s: float
     ) -> None:
+        self._limits = ActionLimits(robots)
         self._mail = mail
         self._roll = roll
         self._silence_s = silence_s
@@ -42,6 +44,7 @@ class RemoteRobots:
         self._awaited: dict[str, int] = {}
         self._given: dict[int, tuple[Action, bytes]] = {}
         self._refused: dict[int, str] = {}
+        self._unasked: dict[int, int] = {}
         for i in robots:
             mail.read(topics.robot_name(i), topics.OUT, partial(self._on_action, i))
 
@@ -58,17 +61,23 @@ class RemoteRobots:
         self._refused.clear()
         for one in truth.present:
             seen, heard = topics.obs(one.robot), topics.rx(one.robot)
+            if heard not in inboxes:
+                raise MissionBrokenError(f"the radio carried no inbox for robot {one.robot}")
             percept = [(seen, observations[seen]), (heard, inboxes[heard])]
             self._put[one.robot](pack_tick(truth.tick, percept))
         present, awaited = self._roll.present, self._awaited.keys()
         self._mail.wait(lambda: awaited.isdisjoint(present), self._silence_s)
+        self._awaited.clear()
         return self._answers(truth)
 
     def _answers(self, truth: Truth) -> Answers:
         answers = Answers()
         for one in truth.present:
             i = one.robot
-            if i in self._given:
+            if self._unasked.pop(i, None) == one.incarnation:
+                self._given.pop(i, None)
+                answers.fenced[i] = "spoke without being asked"
+            elif i in self._given:
                 answers.actions[i], data = self._given[i]
                 answers.wire.append((topics.out(i), data))
             elif i in self._refused:
@@ -83,13 +92,34 @@ class RemoteRobots:
         name = topics.robot_name(robot)
         incarnation = self._awaited.get(name)
         if incarnation is None:
+            self._on_unasked(robot)
             return
+        action = self._read(data)
+        if isinstance(action, str):
+            self._refused[robot] = action
+        elif (action.tick, action.incarnation) == (self._tick, incarnation):
+            self._given[robot] = action, data
+        elif action.incarnation < incarnation and action.tick < self._tick:
+            return  # the last word of the process that was here before
+        else:
+            self._refused[robot] = (
+                f"answered for tick {action.tick} as incarnation {action.incarnation} when asked for "
+                f"tick {self._tick} as incarnation {incarnation}"
+            )
+        del self._awaited[name]
+
+    def _read(self, data: bytes) -> Action | str:
+        """An action, or why this is none that a robot may give."""
+        if len(data) > self._limits.action_bytes:
+            return f"put {len(data)} bytes; an action has at most {self._limits.action_bytes}"
         try:
             action = decode(Action, data)
         except DecodeError as error:
-            self._refused[robot] = f"put no action: {error}"
-            del self._awaited[name]
-            return
-        if (action.tick, action.incarnation) == (self._tick, incarnation):
-            self._given[robot] = action, data
-            del self._awaited[name]
+            return f"put no action: {error}"
+        return self._limits.breach(action) or action
+
+    def _on_unasked(self, robot: int) -> None:
+        """Something from a robot that has answered already, or that nobody asks any more."""
+        given = self._given.get(robot)
+        if given is not None:
+            self._unasked[robot] = given[0].incarnation

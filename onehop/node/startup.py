@@ -2,6 +2,7 @@
 
 import argparse
 import contextlib
+import faulthandler
 import gc
 import os
 import signal
@@ -47,7 +48,9 @@ def start(options: argparse.Namespace) -> None:
 
     On Linux the scheduler is told that this is no interactive program: a process that wakes up does not
     push the running one from its core, so every tick takes fewer switches (15 % more ticks a second).
+    A crash below Python leaves a traceback too.
     """
+    faulthandler.enable()
     if hasattr(os, "SCHED_BATCH"):
         with contextlib.suppress(PermissionError):  # a container may forbid it
             os.sched_setscheduler(0, os.SCHED_BATCH, os.sched_param(0))

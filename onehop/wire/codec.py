@@ -36,6 +36,9 @@ def _from_wire(_: type, value: Any) -> Ranges:
 REFUSALS = (msgspec.MsgspecError, UnicodeDecodeError, RecursionError)
 """What msgspec raises for bytes that are not the message they should be."""
 
+LONGEST_REASON = 200
+"""Characters of a reason that are kept: it may quote a name of any length."""
+
 _ENCODER = msgspec.msgpack.Encoder(enc_hook=_to_wire)
 _DECODERS: dict[type, msgspec.msgpack.Decoder[Any]] = {}
 
@@ -62,7 +65,8 @@ def decode(kind: type[M], data: bytes) -> M:
 
 def _printable(error: Exception) -> str:
     """The reason in one line, whatever the sender put into the names that it quotes."""
-    return "".join(letter if letter.isprintable() else "?" for letter in str(error))
+    reason = str(error)[:LONGEST_REASON]
+    return "".join(letter if letter.isprintable() else "?" for letter in reason)
 
 
 def _version_problem(data: bytes) -> str:

@@ -1,4 +1,4 @@
-"""What a peer that does not read can cost: its own place on the bus within a second, nobody else's.
+"""What one slow or hostile peer can cost: its own place on the bus within a second, nobody else's.
 
 A robot's link is written from the thread of the sender. Zenoh sets no limit to such a write, so a peer
 that lets the buffers of its connection fill up would stop the world for as long as it likes. The kernel
@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 UNREAD_MS = 1000
-"""How long what was sent to a peer may lie unread, once the buffers of its connection are full. A process
-that is alive reads all the time: Zenoh's own thread does, whatever the rest of the process is at."""
+"""How long what was sent to a peer may lie unread once the buffers of its connection are full. A process
+that runs reads all the time: Zenoh's own thread does, whatever the rest of the process is at."""
 
 PENDING = 1000
 """Connections that may have yet to say who they are; each has 10 s for it. With Zenoh's 100 some hundred
@@ -33,7 +33,7 @@ SETTINGS: dict[str, Any] = {
 
 
 def limit_unread(port: int) -> None:
-    """Hold every connection that this process takes on a port to UNREAD_MS, if the system can."""
+    """Hold every connection that this process takes on a TCP port to UNREAD_MS, if the system can."""
     if not hasattr(socket, "TCP_USER_TIMEOUT"):
         return
     for entry in Path("/proc/self/fd").iterdir():
