@@ -37,6 +37,10 @@ def limit_unread(port: int) -> None:
     if not hasattr(socket, "TCP_USER_TIMEOUT"):
         return
     for entry in Path("/proc/self/fd").iterdir():
-        with contextlib.suppress(OSError), socket.socket(fileno=os.dup(int(entry.name))) as own:
-            if own.family in (socket.AF_INET, socket.AF_INET6) and own.getsockname()[1] == port:
-                own.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNREAD_MS)
+        with contextlib.suppress(OSError):  # no socket, or closed meanwhile
+            own = socket.socket(fileno=int(entry.name))
+            try:
+                if own.family in (socket.AF_INET, socket.AF_INET6) and own.getsockname()[1] == port:
+                    own.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNREAD_MS)
+            finally:
+                own.detach()
