@@ -32,6 +32,7 @@ class ProcessFaults:
         open_briefings: Callable[[], AbstractContextManager[None]],
     ) -> None:
         self._open_briefings = open_briefings
+        self._bus = bus
         self._mail = mail
         self._roll = roll
         self._kill = {i: bus.publisher(topics.to(topics.robot_name(i), topics.KILL)) for i in robots}
@@ -56,6 +57,7 @@ class ProcessFaults:
         self._roll.expect_again(name, incarnation)
         self._kill[robot](b"")
         self._mail.wait(lambda: name not in self._roll.present, RESTART_S)
+        self._bus.let_in(name)
         self._put_restart(str(robot).encode())
         with self._open_briefings():
             self._roll.gather([name], RESTART_S)

@@ -44,9 +44,13 @@ class RemoteRobots:
         self._awaited: dict[str, int] = {}
         self._given: dict[int, tuple[Action, bytes]] = {}
         self._refused: dict[int, str] = {}
+        self._incarnations: dict[int, int] = {}
         self._unasked: dict[int, int] = {}
-        for i in robots:
-            mail.read(topics.robot_name(i), topics.OUT, partial(self._on_action, i))
+        self._shut_out = bus.shut_out
+        self._robots = {topics.robot_name(i): i for i in robots}
+        for name, i in self._robots.items():
+            mail.read(name, topics.OUT, partial(self._on_action, i))
+        mail.read_stray(self._on_stray)
 
     def step(
         self, truth: Truth, observations: Mapping[str, bytes], inboxes: Mapping[str, bytes]
@@ -56,7 +60,8 @@ class RemoteRobots:
         observations, inboxes: wire messages of this tick by log channel. Raises MissionBrokenError.
         """
         self._tick = truth.tick
-        self._awaited = {topics.robot_name(one.robot): one.incarnation for one in truth.present}
+        self._incarnations = {one.robot: one.incarnation for one in truth.present}
+        self._awaited = {topics.robot_name(i): number for i, number in self._incarnations.items()}
         self._given.clear()
         self._refused.clear()
         for one in truth.present:
@@ -94,32 +99,38 @@ class RemoteRobots:
         if incarnation is None:
             self._on_unasked(robot)
             return
-        action = self._read(data)
-        if isinstance(action, str):
-            self._refused[robot] = action
-        elif (action.tick, action.incarnation) == (self._tick, incarnation):
-            self._given[robot] = action, data
-        elif action.incarnation < incarnation and action.tick < self._tick:
-            return  # the last word of the process that was here before
+        try:
+            action = self._decoded(data)
+        except DecodeError as error:
+            self._refuse(robot, f"put no action: {error}")
         else:
-            self._refused[robot] = (
-                f"answered for tick {action.tick} as incarnation {action.incarnation} when asked for "
-                f"tick {self._tick} as incarnation {incarnation}"
-            )
+            if action.incarnation < incarnation and action.tick < self._tick:
+                return  # the last word of the process that was here before
+            wrong = self._limits.breach(action, self._tick, incarnation)
+            if wrong is None:
+                self._given[robot] = action, data
+            else:
+                self._refuse(robot, wrong)
         del self._awaited[name]
 
-    def _read(self, data: bytes) -> Action | str:
-        """An action, or why this is none that a robot may give."""
-        if len(data) > self._limits.action_bytes:
-            return f"put {len(data)} bytes; an action has at most {self._limits.action_bytes}"
-        try:
-            action = decode(Action, data)
-        except DecodeError as error:
-            return f"put no action: {error}"
-        return self._limits.breach(action) or action
+    def _decoded(self, data: bytes) -> Action:
+        """Raises DecodeError for anything that is no action."""
+        most = self._limits.action_bytes
+        if len(data) > most:
+            raise DecodeError(f"{len(data)} bytes, and an action has at most {most}")
+        return decode(Action, data)
+
+    def _refuse(self, robot: int, why: str) -> None:
+        """Take nothing more from a robot: what it says next could be a flood."""
+        self._refused[robot] = why
+        self._shut_out(topics.robot_name(robot))
 
     def _on_unasked(self, robot: int) -> None:
-        """Something from a robot that has answered already, or that nobody asks any more."""
-        given = self._given.get(robot)
-        if given is not None:
-            self._unasked[robot] = given[0].incarnation
+        """A robot that takes part says something that it was not asked for."""
+        if robot in self._incarnations:
+            self._unasked[robot] = self._incarnations[robot]
+            self._shut_out(topics.robot_name(robot))
+
+    def _on_stray(self, name: str) -> None:
+        if name in self._robots:
+            self._on_unasked(self._robots[name])

@@ -95,8 +95,14 @@ class ActionLimits:
                 return outbox[:number]
         return outbox
 
-    def breach(self, action: Action) -> str | None:
-        """Which limit an action does not keep, in a few plain words; None if it keeps them all."""
+    def breach(self, action: Action, tick: int, incarnation: int) -> str | None:
+        """Which limit an action does not keep, in a few plain words; None if it keeps them all.
+
+        tick, incarnation: what the robot was asked for, and what it is.
+        """
+        if action.tick != tick or action.incarnation != incarnation:
+            said = f"tick {action.tick} as incarnation {action.incarnation}"
+            return f"answered for {said} when asked for tick {tick} as incarnation {incarnation}"
         status, twist = action.status, action.twist
         numbers = (
             twist.v, twist.w, action.speed, action.remaining_distance, status.epoch,

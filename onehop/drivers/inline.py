@@ -39,7 +39,7 @@ def run(bundle: Bundle, journal: Journal | None, watch: Watcher | None = None) -
             observation = observations[presence.robot]
             inbox = carried.inboxes[presence.robot]
             action = robots[me].step(percept(observation, inbox))
-            wrong = limits.breach(action)
+            wrong = limits.breach(action, truth.tick, presence.incarnation)
             if wrong is None:
                 actions[presence.robot] = action
             else:

@@ -176,6 +176,6 @@ class _WorldPlayer:
                     said = decode(Action, action)
                 except DecodeError:
                     continue
-                if self._limits.breach(said) is None:
+                if self._limits.breach(said, tick.tick, said.incarnation) is None:
                     actions[int(robot)] = said
         world.advance(actions)

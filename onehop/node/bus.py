@@ -27,6 +27,7 @@ import zenoh
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.node import peer_limits
+from onehop.node.gate import Gate, limit_unread
 from onehop.node.parts import ROBOT_LINK_BYTES, Parts, last_part, leading_parts
 from onehop.node.rights import access_control
 
@@ -72,7 +73,7 @@ def make_credentials(names: Iterable[str]) -> dict[str, str]:
     return {name: secrets.token_hex(16) for name in names}
 
 
-def _session_id(password: str) -> str:
+def session_id(password: str) -> str:
     """The id of the one session that may use a password: 16 bytes in hexadecimal, no zero in front."""
     return "1" + hashlib.sha256(password.encode()).hexdigest()[:31]
 
@@ -80,8 +81,11 @@ def _session_id(password: str) -> str:
 class Bus:
     """One session on the bus of one mission. Use as a context manager: leaving without close hangs."""
 
-    def __init__(self, session: zenoh.Session, mission: str, name: str) -> None:
+    def __init__(
+        self, session: zenoh.Session, mission: str, name: str, gate: Gate | None = None
+    ) -> None:
         self._session = session
+        self._gate = gate
         self._mission = mission
         heard = self._key(topics.heard(name))
         self._prefix = len(heard.removesuffix("**"))
@@ -92,6 +96,9 @@ class Bus:
         self._callback_ends: list[SimpleQueue[threading.Thread]] = []
         self._pulse: threading.Thread | None = None
         self._closed = threading.Event()
+        if gate is not None:
+            links = session.info.declare_link_events_listener(self._callback(gate.on_link))
+            self._called.append(links)
         self._channel = session.declare_subscriber(heard, zenoh.handlers.FifoChannel(CHANNEL_MESSAGES))
 
     def __enter__(self) -> Self:
@@ -200,6 +207,16 @@ class Bus:
         while not self._closed.wait(PULSE_S):
             self.tell_self(topics.PULSE)
 
+    def shut_out(self, name: str) -> None:
+        """End the session of a name, and do not take another one. It needs names that are known."""
+        if self._gate is not None:
+            self._gate.shut_out(name)
+
+    def let_in(self, name: str) -> None:
+        """Take a session of this name again."""
+        if self._gate is not None:
+            self._gate.let_in(name)
+
     @contextlib.contextmanager
     def answering(self, key: str, reply: Callable[[str], bytes | None]) -> Iterator[None]:
         """Answer queries on an expression meanwhile: reply(key) gives the bytes, or None for no answer.
@@ -251,14 +268,14 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
             "password": secrets.token_hex(16),
             "dictionary_file": dictionary.name,
         }
-        sessions = {name: _session_id(word) for name, word in credentials.items()}
+        sessions = {name: session_id(word) for name, word in credentials.items()}
         settings["access_control"] = access_control(mission, sessions)
-        return Bus(_open_router(settings), mission, topics.WORLD)
+        return Bus(_open_router(settings), mission, topics.WORLD, Gate(sessions))
 
 
 def _open_router(settings: Mapping[str, Any]) -> zenoh.Session:
     session = _open(settings)
-    peer_limits.limit_unread(int(settings["listen/endpoints"][0].rpartition(":")[2]))
+    limit_unread(int(settings["listen/endpoints"][0].rpartition(":")[2]))
     return session
 
 
@@ -281,7 +298,7 @@ def open_client(
     }
     if password is not None:
         settings["transport/auth/usrpwd"] = {"user": name, "password": password}
-        settings["id"] = _session_id(password)
+        settings["id"] = session_id(password)
     return Bus(_open(settings), mission, name)
 
 

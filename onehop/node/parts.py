@@ -36,14 +36,14 @@ class Parts:
     def joined(self, what: str, data: bytes) -> bytes | None:
         """A message with the parts that came before it; None if it is a part itself.
 
-        what: its name, after its sender's if there may be several. Of parts that are too long together
-        only the beginning is kept, so the message will be none.
+        what: its name, after its sender's if there may be several. A part too many is a message itself,
+        which nobody reads, and ends what came before.
         """
         sender, _, word = what.rpartition("/")
         if word == topics.PART:
             waiting = self._waiting.setdefault(sender, bytearray())
-            waiting += data[: self._most_bytes - len(waiting)]
-            return None
+            waiting += data
+            return None if len(waiting) <= self._most_bytes else bytes(self._waiting.pop(sender))
         if sender in self._waiting:
             return bytes(self._waiting.pop(sender) + data)
         return data

@@ -6,10 +6,6 @@ does set one, TCP_USER_TIMEOUT (RFC 5482): it cuts a connection whose peer has t
 long. Connections inherit it from the socket that listens. Other systems than Linux have only the lease.
 """
 
-import contextlib
-import os
-import socket
-from pathlib import Path
 from typing import Any
 
 UNREAD_MS = 1000
@@ -30,17 +26,3 @@ SETTINGS: dict[str, Any] = {
     "transport/link/tx/queue/congestion_control/block/wait_before_close": 1000 * UNREAD_MS,
 }
 """Zenoh's own settings of the router that serve the same end."""
-
-
-def limit_unread(port: int) -> None:
-    """Hold every connection that this process takes on a TCP port to UNREAD_MS, if the system can."""
-    if not hasattr(socket, "TCP_USER_TIMEOUT"):
-        return
-    for entry in Path("/proc/self/fd").iterdir():
-        with contextlib.suppress(OSError):  # no socket, or closed meanwhile
-            own = socket.socket(fileno=int(entry.name))
-            try:
-                if own.family in (socket.AF_INET, socket.AF_INET6) and own.getsockname()[1] == port:
-                    own.setsockopt(socket.IPPROTO_TCP, socket.TCP_USER_TIMEOUT, UNREAD_MS)
-            finally:
-                own.detach()

@@ -83,7 +83,7 @@ def test_settings_change_keys_with_toml_values(tmp_path: Path) -> None:
             "out of range",
             "from 0 to 1e+06",
         ),
-        ("clock.period_ms=0", "clock.period_ms", "0 is out of range", "from 1 to 300"),
+        ("clock.period_ms=0", "clock.period_ms", "0 is out of range", "from 1 to 1000"),
         ("map.file='nowhere.yaml'", "map.file", "a map file and a polygon map", "keep one"),
     ],
 )
