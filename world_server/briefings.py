@@ -1,11 +1,16 @@
 """What each process is told when it asks at its start: no robot learns the map, or others' poses."""
 
+from collections import Counter
+
 from onehop.contracts import topics
 from onehop.contracts.arrays import FloatArray
 from onehop.contracts.briefings import LogBriefing, radio_briefing, robot_briefing
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
 from world_server.roll_call import RollCall
+
+ANSWERS = 20
+"""How often one process is answered. It asks again when an answer is late, every 2 s for 30 s."""
 
 
 class Briefings:
@@ -17,6 +22,7 @@ class Briefings:
     def __init__(self, bundle: Bundle, walls: FloatArray, driver: str, roll: RollCall) -> None:
         self._scenario = bundle.scenario
         self._roll = roll
+        self._answered: Counter[tuple[str, int]] = Counter()
         self._robots = {topics.config(topics.robot_name(i)): i for i in bundle.scenario.team.robots}
         log = LogBriefing(driver, bundle.scenario_json(), tuple(sorted(bundle.files.items())))
         self._others = {
@@ -25,9 +31,12 @@ class Briefings:
         }
 
     def answer(self, key: str) -> bytes | None:
-        """The briefing that a process asks for under this key, None if there is none."""
+        """The briefing that a process asks for under this key, None if there is none or it asks on."""
         robot = self._robots.get(key)
+        incarnation = 0 if robot is None else self._roll.incarnation(topics.robot_name(robot))
+        self._answered[key, incarnation] += 1
+        if self._answered[key, incarnation] > ANSWERS:
+            return None
         if robot is None:
             return self._others.get(key)
-        incarnation = self._roll.incarnation(topics.robot_name(robot))
         return encode(robot_briefing(self._scenario, robot, incarnation))

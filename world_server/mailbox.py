@@ -27,12 +27,17 @@ class Mailbox:
     def __init__(self, bus: Bus) -> None:
         self._bus = bus
         self._readers: dict[str, Callable[[bytes], None]] = {}
+        self._on_stray: Callable[[str], None] = lambda _: None
         self._break: tuple[float, str] | None = None
         self._mission_is_over = False
 
     def read(self, name: str, what: str, reader: Callable[[bytes], None]) -> None:
         """Let `reader` take in every message `what` of the process `name`."""
         self._readers[f"{name}/{what}"] = reader
+
+    def read_stray(self, reader: Callable[[str], None]) -> None:
+        """Let `reader` know who has said something that nobody here reads."""
+        self._on_stray = reader
 
     def break_off(self, reason: str, after_s: float = 0.0) -> None:
         """Let the next wait raise MissionBrokenError, or the first one after some seconds [s].
@@ -62,8 +67,13 @@ class Mailbox:
                 return False
             received = self._bus.receive_by(min(deadline, now + POLL_S))
             if received is not None:
-                reader = self._readers.get(received[0])
-                if reader is not None:
-                    reader(received[1])
+                self._hand_over(*received)
             now = time.monotonic()
         return True
+
+    def _hand_over(self, what: str, data: bytes) -> None:
+        reader = self._readers.get(what)
+        if reader is None:
+            self._on_stray(what.partition("/")[0])
+        else:
+            reader(data)

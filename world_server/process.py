@@ -3,6 +3,7 @@
 import argparse
 import signal
 import time
+from functools import partial
 from pathlib import Path
 
 from onehop.contracts import topics
@@ -70,23 +71,25 @@ def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str
     robots, silence_s = bundle.scenario.team.robots, bundle.scenario.clock.silence_s
     mail = Mailbox(bus)
     roll = RollCall(mail, robots)
+    briefings = Briefings(bundle, walls, driver, roll)
+    open_briefings = partial(bus.answering, topics.config("*"), briefings.answer)
     recording = Recording(bus, mail, silence_s)
     mission = LockStep(
         world,
         RemoteRadio(bus, mail, silence_s),
         RemoteRobots(bus, mail, roll, robots, silence_s),
-        ProcessFaults(bus, mail, roll, robots),
+        ProcessFaults(bus, mail, roll, robots, open_briefings),
         recording,
         ProgressReports(bus),
     )
     _heed_stops(bus, mail)
     mail.read(topics.RECORDER, topics.FAILED, lambda why: mail.break_off(why.decode(errors="replace")))
     bus.watch("*")
-    bus.answer(topics.config("*"), Briefings(bundle, walls, driver, roll).answer)
     bus.announce(topics.WORLD)
     started = time.monotonic()
     try:
-        roll.gather(roll.everyone, START_S)
+        with open_briefings():
+            roll.gather(roll.everyone, START_S)
         startup.calm_garbage_collector()
         started = time.monotonic()
         outcome = mission.run()

@@ -3,7 +3,8 @@
 The world holds its tick meanwhile, so a run with kills and restarts is as reproducible as one without.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 
 from onehop.contracts import topics
 from onehop.contracts.messages import Truth
@@ -17,9 +18,21 @@ RESTART_S = 20.0
 
 
 class ProcessFaults:
-    """What the script does to processes. robots: ids of the team."""
+    """What the script does to processes.
 
-    def __init__(self, bus: Bus, mail: Mailbox, roll: RollCall, robots: tuple[int, ...]) -> None:
+    robots: ids of the team. open_briefings: lets processes ask for their briefings meanwhile.
+    """
+
+    def __init__(
+        self,
+        bus: Bus,
+        mail: Mailbox,
+        roll: RollCall,
+        robots: tuple[int, ...],
+        open_briefings: Callable[[], AbstractContextManager[None]],
+    ) -> None:
+        self._open_briefings = open_briefings
+        self._bus = bus
         self._mail = mail
         self._roll = roll
         self._kill = {i: bus.publisher(topics.to(topics.robot_name(i), topics.KILL)) for i in robots}
@@ -44,5 +57,7 @@ class ProcessFaults:
         self._roll.expect_again(name, incarnation)
         self._kill[robot](b"")
         self._mail.wait(lambda: name not in self._roll.present, RESTART_S)
+        self._bus.let_in(name)
         self._put_restart(str(robot).encode())
-        self._roll.gather([name], RESTART_S)
+        with self._open_briefings():
+            self._roll.gather([name], RESTART_S)

@@ -1,6 +1,7 @@
 """The radio as the world calls it: a truth goes out, and what it carried comes back."""
 
 from onehop.contracts import topics
+from onehop.contracts.errors import DecodeError
 from onehop.node.bus import Bus
 from onehop.wire.batch import unpack_tick
 from onehop.wire.journal import WireMessage
@@ -27,7 +28,10 @@ class RemoteRadio:
         if not self._mail.wait(lambda: self._answer is not None, self._silence_s):
             raise MissionBrokenError(f"the radio is silent for {self._silence_s:g} s")
         assert self._answer is not None
-        answered, messages = unpack_tick(self._answer)
+        try:
+            answered, messages = unpack_tick(self._answer)
+        except DecodeError as error:
+            raise MissionBrokenError(f"the radio put no {error}") from None
         if answered != tick:
             raise MissionBrokenError(f"the radio answers for tick {answered}, not {tick}")
         return messages

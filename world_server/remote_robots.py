@@ -5,13 +5,14 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from onehop.contracts import topics
+from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import Action, Truth
 from onehop.node.bus import Bus
 from onehop.wire.batch import pack_tick
 from onehop.wire.codec import decode
 from onehop.wire.journal import WireMessage
-from world_server.mailbox import Mailbox
+from world_server.mailbox import Mailbox, MissionBrokenError
 from world_server.roll_call import RollCall
 
 
@@ -34,6 +35,7 @@ class RemoteRobots:
     def __init__(
         self, bus: Bus, mail: Mailbox, roll: RollCall, robots: tuple[int, ...], silence_s: float
     ) -> None:
+        self._limits = ActionLimits(robots)
         self._mail = mail
         self._roll = roll
         self._silence_s = silence_s
@@ -42,8 +44,13 @@ class RemoteRobots:
         self._awaited: dict[str, int] = {}
         self._given: dict[int, tuple[Action, bytes]] = {}
         self._refused: dict[int, str] = {}
-        for i in robots:
-            mail.read(topics.robot_name(i), topics.OUT, partial(self._on_action, i))
+        self._incarnations: dict[int, int] = {}
+        self._unasked: dict[int, int] = {}
+        self._shut_out = bus.shut_out
+        self._robots = {topics.robot_name(i): i for i in robots}
+        for name, i in self._robots.items():
+            mail.read(name, topics.OUT, partial(self._on_action, i))
+        mail.read_stray(self._on_stray)
 
     def step(
         self, truth: Truth, observations: Mapping[str, bytes], inboxes: Mapping[str, bytes]
@@ -53,22 +60,29 @@ class RemoteRobots:
         observations, inboxes: wire messages of this tick by log channel. Raises MissionBrokenError.
         """
         self._tick = truth.tick
-        self._awaited = {topics.robot_name(one.robot): one.incarnation for one in truth.present}
+        self._incarnations = {one.robot: one.incarnation for one in truth.present}
+        self._awaited = {topics.robot_name(i): number for i, number in self._incarnations.items()}
         self._given.clear()
         self._refused.clear()
         for one in truth.present:
             seen, heard = topics.obs(one.robot), topics.rx(one.robot)
+            if heard not in inboxes:
+                raise MissionBrokenError(f"the radio carried no inbox for robot {one.robot}")
             percept = [(seen, observations[seen]), (heard, inboxes[heard])]
             self._put[one.robot](pack_tick(truth.tick, percept))
         present, awaited = self._roll.present, self._awaited.keys()
         self._mail.wait(lambda: awaited.isdisjoint(present), self._silence_s)
+        self._awaited.clear()
         return self._answers(truth)
 
     def _answers(self, truth: Truth) -> Answers:
         answers = Answers()
         for one in truth.present:
             i = one.robot
-            if i in self._given:
+            if self._unasked.pop(i, None) == one.incarnation:
+                self._given.pop(i, None)
+                answers.fenced[i] = "spoke without being asked"
+            elif i in self._given:
                 answers.actions[i], data = self._given[i]
                 answers.wire.append((topics.out(i), data))
             elif i in self._refused:
@@ -83,13 +97,40 @@ class RemoteRobots:
         name = topics.robot_name(robot)
         incarnation = self._awaited.get(name)
         if incarnation is None:
+            self._on_unasked(robot)
             return
         try:
-            action = decode(Action, data)
+            action = self._decoded(data)
         except DecodeError as error:
-            self._refused[robot] = f"put no action: {error}"
-            del self._awaited[name]
-            return
-        if (action.tick, action.incarnation) == (self._tick, incarnation):
-            self._given[robot] = action, data
-            del self._awaited[name]
+            self._refuse(robot, f"put no action: {error}")
+        else:
+            if action.incarnation < incarnation and action.tick < self._tick:
+                return  # the last word of the process that was here before
+            wrong = self._limits.breach(action, self._tick, incarnation)
+            if wrong is None:
+                self._given[robot] = action, data
+            else:
+                self._refuse(robot, wrong)
+        del self._awaited[name]
+
+    def _decoded(self, data: bytes) -> Action:
+        """Raises DecodeError for anything that is no action."""
+        most = self._limits.action_bytes
+        if len(data) > most:
+            raise DecodeError(f"{len(data)} bytes, and an action has at most {most}")
+        return decode(Action, data)
+
+    def _refuse(self, robot: int, why: str) -> None:
+        """Take nothing more from a robot: what it says next could be a flood."""
+        self._refused[robot] = why
+        self._shut_out(topics.robot_name(robot))
+
+    def _on_unasked(self, robot: int) -> None:
+        """A robot that takes part says something that it was not asked for."""
+        if robot in self._incarnations:
+            self._unasked[robot] = self._incarnations[robot]
+            self._shut_out(topics.robot_name(robot))
+
+    def _on_stray(self, name: str) -> None:
+        if name in self._robots:
+            self._on_unasked(self._robots[name])

@@ -16,7 +16,8 @@ RobotId = Annotated[int, Range(1, 2**31 - 1)]
 Seconds = Annotated[float, Range(0.0, 1e6)]
 """A time of the mission [s]: up to eleven days."""
 
-MOST_ROBOTS = 1000
+MOST_ROBOTS = 300
+"""Robots of a team: a leader names all of them in one frame of 2304 bytes, whatever their ids are."""
 
 
 @dataclass(frozen=True, slots=True)

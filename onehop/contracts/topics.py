@@ -34,6 +34,9 @@ PERCEPT = "percept"
 OUT = "out"
 """Robot to world: its action of tick k."""
 
+PART = "part"
+"""To or from a robot: the beginning of a message that is longer than its link carries."""
+
 KILL = "kill"
 """World to robot: a scripted kill, which the robot's process carries out on itself."""
 

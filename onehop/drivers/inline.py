@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from onehop.contracts import topics
+from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.briefings import radio_briefing, robot_briefing
 from onehop.contracts.messages import Action, Outcome, percept
 from onehop.maps.map_file import load_map
@@ -23,20 +24,29 @@ def run(bundle: Bundle, journal: Journal | None, watch: Watcher | None = None) -
     world = World(scenario, walls)
     radio = Radio(radio_briefing(scenario, walls.segments))
     robots: dict[tuple[int, int], Robot] = {}
+    limits = ActionLimits(scenario.team.robots)
     outcome = None
     while outcome is None:
         truth = world.truth()
         carried = radio.carry(truth)
         observations = world.observe()
         actions: dict[int, Action] = {}
+        fenced: dict[int, str] = {}
         for presence in truth.present:
             me = presence.robot, presence.incarnation
             if me not in robots:
                 robots[me] = Robot(robot_briefing(scenario, *me))
             observation = observations[presence.robot]
             inbox = carried.inboxes[presence.robot]
-            actions[presence.robot] = robots[me].step(percept(observation, inbox))
+            action = robots[me].step(percept(observation, inbox))
+            wrong = limits.breach(action, truth.tick, presence.incarnation)
+            if wrong is None:
+                actions[presence.robot] = action
+            else:
+                fenced[presence.robot] = wrong
         world.advance(actions)
+        for robot, why in fenced.items():
+            world.fence(robot, why)
         if journal is not None:
             messages: list[WireMessage] = [(topics.TRUTH, encode(truth))]
             messages.append((topics.RADIO_RECORD, encode(carried.record)))

@@ -13,6 +13,7 @@ from typing import Any
 import msgpack
 
 from onehop.contracts import topics
+from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.briefings import radio_briefing, robot_briefing
 from onehop.contracts.errors import DecodeError, OnehopError
 from onehop.contracts.messages import Action, Inbox, Observation, Truth, percept
@@ -253,6 +254,7 @@ class _WorldPlayer:
 
     def __init__(self, scenario: Scenario, walls: WallMap) -> None:
         self._world = World(scenario, walls)
+        self._limits = ActionLimits(scenario.team.robots)
 
     def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         truth = _value(Truth, tick, topics.TRUTH)
@@ -271,7 +273,9 @@ class _WorldPlayer:
             stem, _, robot = key.partition("/")
             if stem == "out":
                 try:
-                    actions[int(robot)] = decode(Action, action)
+                    said = decode(Action, action)
                 except DecodeError:
                     continue
+                if self._limits.breach(said, tick.tick, said.incarnation) is None:
+                    actions[int(robot)] = said
         world.advance(actions)

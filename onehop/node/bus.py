@@ -9,13 +9,15 @@ Python callback costs a thread switch or two more for each message.
 No thread outlives its session: the pulse and the threads of Python callbacks end before it is closed.
 """
 
+import contextlib
+import hashlib
 import json
 import os
 import secrets
 import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from queue import SimpleQueue
 from types import TracebackType
 from typing import Any, Self, TypeVar
@@ -24,6 +26,9 @@ import zenoh
 
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
+from onehop.node import peer_limits
+from onehop.node.gate import Gate, limit_unread
+from onehop.node.parts import ROBOT_LINK_BYTES, Parts, last_part, leading_parts
 from onehop.node.rights import access_control
 
 T = TypeVar("T")
@@ -33,11 +38,6 @@ GONE = b"gone"
 
 CHANNEL_MESSAGES = 100_000
 """Messages that may wait for a process. When there are more its peers wait too: nothing is dropped."""
-
-ROBOT_LINK_BYTES = 48_000
-"""Longest message to or from a robot. Its link is Zenoh's low-latency transport, which writes to the
-socket from the sender's thread (a tick costs a quarter less CPU) but knows no fragments: it would drop
-what is longer without a word."""
 
 PULSE_S = 0.1
 """How often a process that waits with a time limit looks at the clock."""
@@ -55,6 +55,10 @@ ONE_THREAD = (
 )
 """Zenoh's own threads in each process: one. Its default of several costs 30 % more time a tick."""
 
+ROUTER_THREADS = ONE_THREAD.replace("acc: (handover: net)", "acc: (worker_threads: 1)")
+"""The router's: new connections have a thread of their own. To close one that never said who it is takes
+5 ms (SO_LINGER), in which the thread can do nothing else; strangers may open as many as they like."""
+
 _QUIET = {
     "scouting/multicast/enabled": False,
     "scouting/gossip/enabled": False,
@@ -69,20 +73,32 @@ def make_credentials(names: Iterable[str]) -> dict[str, str]:
     return {name: secrets.token_hex(16) for name in names}
 
 
+def session_id(password: str) -> str:
+    """The id of the one session that may use a password: 16 bytes in hexadecimal, no zero in front."""
+    return "1" + hashlib.sha256(password.encode()).hexdigest()[:31]
+
+
 class Bus:
     """One session on the bus of one mission. Use as a context manager: leaving without close hangs."""
 
-    def __init__(self, session: zenoh.Session, mission: str, name: str) -> None:
+    def __init__(
+        self, session: zenoh.Session, mission: str, name: str, gate: Gate | None = None
+    ) -> None:
         self._session = session
+        self._gate = gate
         self._mission = mission
         heard = self._key(topics.heard(name))
         self._prefix = len(heard.removesuffix("**"))
         self._own = heard.replace("**", topics.WORLD + "/" if name == topics.WORLD else "")
+        self._parts = Parts(peer_limits.LONGEST_MESSAGE_BYTES)
         self._kept: list[Any] = []
         self._called: list[Any] = []
         self._callback_ends: list[SimpleQueue[threading.Thread]] = []
         self._pulse: threading.Thread | None = None
         self._closed = threading.Event()
+        if gate is not None:
+            links = session.info.declare_link_events_listener(self._callback(gate.on_link))
+            self._called.append(links)
         self._channel = session.declare_subscriber(heard, zenoh.handlers.FifoChannel(CHANNEL_MESSAGES))
 
     def __enter__(self) -> Self:
@@ -123,7 +139,20 @@ class Bus:
             express=express,
         )
         self._kept.append(publisher)
-        return _limited(publisher.put, key) if _is_of_robot(key) else publisher.put
+        return self._in_parts(publisher.put, key) if _is_of_robot(key) else publisher.put
+
+    def _in_parts(self, put: Callable[[bytes], None], key: str) -> Callable[[bytes], None]:
+        """put for a robot's link, for messages of any length."""
+        part = self._key(key.rpartition("/")[0] + "/" + topics.PART)
+
+        def put_all(data: bytes) -> None:
+            if len(data) > ROBOT_LINK_BYTES:
+                for leading in leading_parts(data):
+                    self._session.put(part, leading, congestion_control=zenoh.CongestionControl.BLOCK)
+                data = last_part(data)
+            put(data)
+
+        return put_all
 
     def tell_self(self, what: str, data: bytes = b"") -> None:
         """Let this process receive a message from itself; after the session's end it is no message.
@@ -154,8 +183,12 @@ class Bus:
         Its name is what the key says after to/<name>/, and for the world after from/.
         """
         channel = self._channel
-        sample = channel.try_recv() or channel.recv()
-        return str(sample.key_expr)[self._prefix :], sample.payload.to_bytes()
+        while True:
+            sample = channel.try_recv() or channel.recv()
+            what = str(sample.key_expr)[self._prefix :]
+            data = self._parts.joined(what, sample.payload.to_bytes())
+            if data is not None:
+                return what, data
 
     def receive_by(self, deadline: float) -> tuple[str, bytes] | None:
         """The next message; None when there is none by the deadline (time.monotonic() [s])."""
@@ -174,18 +207,35 @@ class Bus:
         while not self._closed.wait(PULSE_S):
             self.tell_self(topics.PULSE)
 
-    def answer(self, key: str, reply: Callable[[str], bytes | None]) -> None:
-        """Answer queries on an expression: reply(key) gives the bytes, or None for no answer."""
+    def shut_out(self, name: str) -> None:
+        """End the session of a name, and do not take another one. It needs names that are known."""
+        if self._gate is not None:
+            self._gate.shut_out(name)
+
+    def let_in(self, name: str) -> None:
+        """Take a session of this name again."""
+        if self._gate is not None:
+            self._gate.let_in(name)
+
+    @contextlib.contextmanager
+    def answering(self, key: str, reply: Callable[[str], bytes | None]) -> Iterator[None]:
+        """Answer queries on an expression meanwhile: reply(key) gives the bytes, or None for no answer.
+
+        At any other time the router itself says to whoever asks that there is nobody to answer.
+        """
         prefix = len(self._mission) + 1
 
         def asked(query: zenoh.Query) -> None:
             with query:
-                name = str(query.key_expr)[prefix:]
-                data = reply(name)
+                data = reply(str(query.key_expr)[prefix:])
                 if data is not None:
                     query.reply(query.key_expr, data)
 
-        self._called.append(self._session.declare_queryable(self._key(key), self._callback(asked)))
+        queryable: Any = self._session.declare_queryable(self._key(key), self._callback(asked))
+        try:
+            yield
+        finally:
+            queryable.undeclare()
 
     def ask(self, key: str, timeout_s: float) -> bytes | None:
         """The first answer to a query on a key, None when none comes in time."""
@@ -199,19 +249,6 @@ def _is_of_robot(key: str) -> bool:
     return f"/{topics.robot_name('')}" in key
 
 
-def _limited(put: Callable[[bytes], None], key: str) -> Callable[[bytes], None]:
-    """put for a robot's link. Raises MissionError for a message that does not fit."""
-
-    def put_if_it_fits(data: bytes) -> None:
-        if len(data) > ROBOT_LINK_BYTES:
-            raise MissionError(
-                f"{key}: a message of {len(data)} bytes; a robot's link carries {ROBOT_LINK_BYTES}"
-            )
-        put(data)
-
-    return put_if_it_fits
-
-
 def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | None = None) -> Bus:
     """The world's session. credentials: passwords by name; without them anyone may say anything."""
     settings: dict[str, Any] = {
@@ -219,9 +256,10 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
         "listen/endpoints": [endpoint],
         "scouting/delay": 0,
         "transport/unicast/lowlatency": True,
+        **peer_limits.SETTINGS,
     }
     if credentials is None:
-        return Bus(_open(settings), mission, topics.WORLD)
+        return Bus(_open_router(settings), mission, topics.WORLD)
     with tempfile.TemporaryFile("w") as dictionary:  # it has no name that could outlive this process
         dictionary.writelines(f"{name}:{word}\n" for name, word in credentials.items())
         dictionary.flush()
@@ -230,8 +268,15 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
             "password": secrets.token_hex(16),
             "dictionary_file": f"/dev/fd/{dictionary.fileno()}",
         }
-        settings["access_control"] = access_control(mission, credentials)
-        return Bus(_open(settings), mission, topics.WORLD)
+        sessions = {name: session_id(word) for name, word in credentials.items()}
+        settings["access_control"] = access_control(mission, sessions)
+        return Bus(_open_router(settings), mission, topics.WORLD, Gate(sessions))
+
+
+def _open_router(settings: Mapping[str, Any]) -> zenoh.Session:
+    session = _open(settings)
+    limit_unread(int(settings["listen/endpoints"][0].rpartition(":")[2]))
+    return session
 
 
 def open_client(
@@ -253,11 +298,13 @@ def open_client(
     }
     if password is not None:
         settings["transport/auth/usrpwd"] = {"user": name, "password": password}
+        settings["id"] = session_id(password)
     return Bus(_open(settings), mission, name)
 
 
 def _open(settings: Mapping[str, Any]) -> zenoh.Session:
-    os.environ.setdefault("ZENOH_RUNTIME", ONE_THREAD)
+    threads = ROUTER_THREADS if settings["mode"] == "router" else ONE_THREAD
+    os.environ.setdefault("ZENOH_RUNTIME", threads)
     config = zenoh.Config()
     for key, value in {**_QUIET, "transport/link/tx/lease": LEASE_MS, **settings}.items():
         config.insert_json5(key, json.dumps(value))

@@ -5,7 +5,7 @@ router, which knows each of them by the password of its user name. Expressions s
 mission's prefix.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,15 +45,19 @@ def rights(name: str) -> Rights:
     )
 
 
-def access_control(mission: str, names: Iterable[str]) -> dict[str, Any]:
-    """Zenoh's `access_control` that grants each name its rights and nothing else."""
+def access_control(mission: str, sessions: Mapping[str, str]) -> dict[str, Any]:
+    """Zenoh's `access_control` that grants each name its rights and nothing else.
+
+    sessions: the one session id of each name. The router takes no second session with an id that is
+    there already, so a name cannot be used twice at once.
+    """
     rules: list[dict[str, Any]] = []
     subjects: list[dict[str, Any]] = []
     policies: list[dict[str, Any]] = []
-    for name in names:
+    for name, session in sessions.items():
         granted = list(_rules(mission, name))
         rules += granted
-        subjects.append({"id": name, "usernames": [name]})
+        subjects.append({"id": name, "usernames": [name], "zids": [session]})
         policies.append({"id": name, "rules": [rule["id"] for rule in granted], "subjects": [name]})
     return {
         "enabled": True,

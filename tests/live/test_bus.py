@@ -15,12 +15,12 @@ from onehop.node import bus
 from onehop.node.bus import (
     ALIVE,
     GONE,
-    ROBOT_LINK_BYTES,
     Bus,
     make_credentials,
     open_client,
     open_router,
 )
+from onehop.node.parts import ROBOT_LINK_BYTES
 
 pytestmark = pytest.mark.live
 
@@ -101,10 +101,11 @@ def test_liveliness_comes_with_the_messages(network: Network) -> None:
 
 
 def test_a_process_is_briefed_for_itself_only(network: Network) -> None:
-    network.world.answer("config/*", lambda key: key.encode())
-    time.sleep(0.2)
-    assert network.clients["robot-1"].ask(topics.config("robot-1"), 2.0) == b"config/robot-1"
-    assert network.clients["robot-1"].ask(topics.config("robot-2"), 1.0) is None
+    with network.world.answering("config/*", lambda key: key.encode()):
+        time.sleep(0.2)
+        assert network.clients["robot-1"].ask(topics.config("robot-1"), 2.0) == b"config/robot-1"
+        assert network.clients["robot-1"].ask(topics.config("robot-2"), 1.0) is None
+    assert network.clients["robot-1"].ask(topics.config("robot-1"), 1.0) is None
 
 
 def test_a_wrong_password_gets_nobody_in(network: Network) -> None:
@@ -112,13 +113,17 @@ def test_a_wrong_password_gets_nobody_in(network: Network) -> None:
         open_client("m", network.endpoint, "robot-1", "guess", timeout_ms=1000)
 
 
-def test_what_a_robots_link_cannot_carry_is_refused(network: Network) -> None:
-    put = network.clients["robot-1"].publisher("from/robot-1/out")
-    longest = bytes(ROBOT_LINK_BYTES)
-    put(longest)
-    assert _heard(network.world) == [("robot-1/out", longest)]
-    with pytest.raises(MissionError, match=r"from/robot-1/out: a message of 48001 bytes"):
-        put(bytes(ROBOT_LINK_BYTES + 1))
+@pytest.mark.parametrize(
+    "size", [0, 1, ROBOT_LINK_BYTES, ROBOT_LINK_BYTES + 1, 2 * ROBOT_LINK_BYTES, 3_000_000]
+)
+def test_messages_of_any_length_come_and_go_over_a_robots_link(network: Network, size: int) -> None:
+    data = bytes(number % 251 for number in range(size))
+    network.clients["robot-1"].publisher("from/robot-1/out")(data)
+    network.clients["robot-2"].publisher("from/robot-2/out")(b"short")
+    network.world.publisher("to/robot-1/percept")(data)
+    network.world.publisher("to/robot-1/kill")(b"")
+    assert _heard(network.world) == [("robot-1/out", data), ("robot-2/out", b"short")]
+    assert _heard(network.clients["robot-1"]) == [("kill", b""), ("percept", data)]
 
 
 def test_other_links_carry_messages_of_any_length(network: Network) -> None:
@@ -141,14 +146,14 @@ def test_no_thread_outlives_its_session(
     for _ in range(10):
         with open_router("m", endpoint) as world:
             world.watch("*")
-            world.answer("config/*", lambda key: key.encode())
-            for _ in range(5):
-                with open_client("m", endpoint, "robot-1", None) as robot:
-                    robot.watch("*")
-                    robot.announce("robot-1")
-                    robot.ask(topics.config("robot-1"), 0.01)
-                    robot.receive_by(time.monotonic() + 0.01)
-                    robot.announce("robot-1")
+            with world.answering("config/*", lambda key: key.encode()):
+                for _ in range(5):
+                    with open_client("m", endpoint, "robot-1", None) as robot:
+                        robot.watch("*")
+                        robot.announce("robot-1")
+                        robot.ask(topics.config("robot-1"), 0.01)
+                        robot.receive_by(time.monotonic() + 0.01)
+                        robot.announce("robot-1")
             world.receive_by(time.monotonic() + 0.01)
     assert threading.enumerate() == before
     assert raised == []

@@ -46,16 +46,12 @@ class TickSummary(NamedTuple):
         return None if status is None else status.mode
 
 
-class _GivenUp(NamedTuple):
-    """A leader's note that it gave a robot up. after: how many leadership terms had begun by then."""
-
-    by: int
-    reason: str
-    after: int
-
-
 class Referee:
-    """Watches one mission, tick by tick."""
+    """Watches one mission, tick by tick.
+
+    _given_up: for each robot why it was given up, by (who did, terms that had begun by then); of what a
+    robot says between two terms the last word counts.
+    """
 
     def __init__(self, scenario: Scenario) -> None:
         self._goal = scenario.goal
@@ -66,7 +62,7 @@ class Referee:
         self._moved_ns = 0
         self._leadership = LeadershipHistory()
         self._departed: dict[int, Lost] = {}
-        self._given_up: dict[int, list[_GivenUp]] = {robot: [] for robot in self._robots}
+        self._given_up: dict[int, dict[tuple[int, int], str]] = {robot: {} for robot in self._robots}
         self._last_notes: dict[int, str] = {}
 
     def on_departure(self, robot: int, why: str, time_ns: int) -> None:
@@ -88,9 +84,12 @@ class Referee:
 
     def _on_given_up(self, leader: int, note: Note) -> None:
         reason, lost = note.data.get("reason", ""), note.data.get("robots", ())
-        record = _GivenUp(leader, str(reason), len(self._leadership.terms))
+        after = len(self._leadership.terms)
         for robot in lost if isinstance(lost, tuple) else ():
-            self._given_up.setdefault(robot, []).append(record)
+            if robot in self._given_up:
+                records = self._given_up[robot]
+                records.pop((leader, after), None)
+                records[leader, after] = str(reason)
 
     def judge(self, now: TickSummary, hope: bool) -> Outcome | None:
         """The outcome, if the mission has one by now. hope: somebody will yet be restarted."""
@@ -210,9 +209,9 @@ class Referee:
 
         between: how many terms had begun at any time from the last roster with the robot to this one.
         """
-        for given_up in reversed(self._given_up[robot]):
-            if given_up.by in term.members and given_up.after in between:
-                return f"given up by robot {given_up.by}{loss_in_words(given_up.reason)}"
+        for (by, after), reason in reversed(self._given_up[robot].items()):
+            if by in term.members and after in between:
+                return f"given up by robot {by}{loss_in_words(reason)}"
         return f"dropped from the roster of robot {term.leader}"
 
 

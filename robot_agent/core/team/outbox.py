@@ -2,14 +2,22 @@
 
 from collections.abc import Sequence
 
+from onehop.contracts.action_limits import NOTES, ActionLimits
 from onehop.contracts.messages import Note, NoteValue, Transmission
 from robot_agent.core.team.team_messages import TeamMessage, encode
 
+PROTOCOL_NOTES = NOTES // 2
+"""Notes of the protocol that are told in a tick, from the first; the rest is for the way-finding."""
+
 
 class Outbox:
-    """Collects what is said until it is taken, once a tick."""
+    """Collects what is said until it is taken, once a tick; no more than a robot may say in one.
 
-    def __init__(self) -> None:
+    Others could make it say more: every command asks for an answer.
+    """
+
+    def __init__(self, limits: ActionLimits) -> None:
+        self._limits = limits
         self._outbox: list[Transmission] = []
         self._notes: list[Note] = []
 
@@ -29,10 +37,10 @@ class Outbox:
 
     def take_outbox(self) -> tuple[Transmission, ...]:
         """What is to be sent, once."""
-        outbox, self._outbox = tuple(self._outbox), []
-        return outbox
+        outbox, self._outbox = self._limits.fitting(self._outbox), []
+        return tuple(outbox)
 
     def take_notes(self) -> tuple[Note, ...]:
         """What is to be told, once."""
-        notes, self._notes = tuple(self._notes), []
-        return notes
+        notes, self._notes = self._notes[:PROTOCOL_NOTES], []
+        return tuple(notes)

@@ -13,6 +13,7 @@ so in a Lost_Follower command (a hand-over), repeated until that leader is heard
 
 from collections.abc import Iterable, Sequence
 
+from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.briefings import Briefing
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
@@ -57,7 +58,7 @@ class TeamProtocol:
         self.rules = make_rules(briefing.team)
         self.counters = {"garbled": 0, "stale": 0, "foreign": 0}
         self._team = briefing.team
-        self._outbox = Outbox()
+        self._outbox = Outbox(ActionLimits(briefing.team.robots))
         self.state = TeamState(briefing, now_ns, pose, self._outbox)
         self._known = frozenset(briefing.team.robots)
         self._period_ns = nanoseconds(briefing.team.next_period)

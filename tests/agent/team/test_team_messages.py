@@ -7,10 +7,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from onehop.contracts.action_limits import MSDU_BYTES
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
+from onehop.contracts.sections import MOST_ROBOTS
+from onehop.contracts.serial_numbers import LIMIT
 from robot_agent.core.team.roster import Roster
 from robot_agent.core.team.team_messages import (
+    MAX_COORDINATE,
+    MAX_TRAIL,
     SCHEMA,
     Ack,
     Beacon,
@@ -118,3 +123,21 @@ def test_a_next_of_a_hundred_robots_with_its_trail_fits_into_one_msdu():
         CommandKind.NEXT, roster, 10_000, MissionPhase.DRIVING, False, Pose(99.9, 99.9, 3.1), (), trail
     )
     assert len(encode(command)) <= 800  # thesis 3.7: one MSDU of 800 B
+
+
+def test_the_longest_command_of_the_largest_team_fits_into_one_frame():
+    """Whatever the ids are, and however many are given up: nobody is both member and lost."""
+    ids = tuple(range(2**31 - MOST_ROBOTS, 2**31))
+    far = tuple((MAX_COORDINATE, -MAX_COORDINATE) for _ in range(MAX_TRAIL))
+    command = Command(
+        CommandKind.LOST_FOLLOWER,
+        Roster(LIMIT - 1, ids[:1]),
+        LIMIT - 1,
+        MissionPhase.DRIVING,
+        True,
+        Pose(1.5, 1.5, 1.5),
+        ids[1:],
+        far,
+        far[:2],
+    )
+    assert len(encode(command)) <= MSDU_BYTES

@@ -58,7 +58,7 @@ def test_settings_change_keys_with_toml_values(tmp_path: Path) -> None:
         ("team.size=2.5", "team.size", "2.5 is not a whole number", "give a whole number"),
         ("seed=true", "seed", "True is not a whole number", "give a whole number"),
         ("goal.x='a'", "goal.x", "'a' is not a number", "give a number"),
-        ("team.size=0", "team.size", "0 is out of range", "from 1 to 1000"),
+        ("team.size=0", "team.size", "0 is out of range", "from 1 to 300"),
         ("team.ids=[1, 2, 2]", "team.ids", "robot 2 stands twice", "every id once"),
         ("gains.k_beta=1.5", "gains.k_beta", "1.5 is not negative", "eq. 3.14"),
         ("gains.k_alpha=2", "gains.k_alpha", "2.0 - k_rho_max 3.0 is not positive", "eq. 3.14"),
