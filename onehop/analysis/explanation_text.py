@@ -1,6 +1,5 @@
 """An explanation in sentences, for people."""
 
-import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -12,6 +11,9 @@ from onehop.contracts.printable import ids_in_words, in_words, printable
 
 MOST_LINES = 200
 """Events and messages that are listed, the last ones: a robot can send thousands in a second."""
+
+LEAST_SNR_DB = -50.0
+"""Below it nothing was received to speak of: out of all reach, cut off, or drowned by the receiver itself."""
 
 WHY_LOST = {
     DeliveryStatus.BELOW_THRESHOLD: "the signal was too weak: distance, a wall, a cut link or a jammer",
@@ -153,7 +155,7 @@ def _message(trace: MessageTrace, robot: int) -> str:
         delay_ms = 1e3 * (trace.arrival_s - trace.offered_s)
         outcome = f"arrived after {delay_ms:.1f} ms, SNR {trace.snr_db:.1f} dB"
     else:
-        snr = "" if math.isinf(trace.snr_db) else f" (SNR {trace.snr_db:.1f} dB)"
+        snr = f" (SNR {trace.snr_db:.1f} dB)" if trace.snr_db > LEAST_SNR_DB else ""
         outcome = f"LOST, {trace.status}{snr}: {WHY_LOST[DeliveryStatus(trace.status)]}"
     tries = f", attempts {trace.attempts}" if trace.attempts > 1 else ""
     via = f", via {ids_in_words(trace.path[1:-1])}" if len(trace.path) > 2 else ""
