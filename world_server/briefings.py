@@ -1,13 +1,13 @@
 """What each process is told when it asks at its start: no robot learns the map, or others' poses."""
 
 from collections import Counter
+from collections.abc import Callable
 
 from onehop.contracts import topics
 from onehop.contracts.arrays import FloatArray
 from onehop.contracts.briefings import LogBriefing, radio_briefing, robot_briefing
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
-from world_server.roll_call import RollCall
 
 ANSWERS = 20
 """How often one process is answered. It asks again when an answer is late, every 2 s for 30 s."""
@@ -16,12 +16,15 @@ ANSWERS = 20
 class Briefings:
     """Answers for one mission.
 
-    walls: (n, 4) segments [m]. driver: what the log calls this way of running.
+    walls: (n, 4) segments [m]. driver: what the log calls this way of running. incarnation: how often
+    the process of a name has been started again.
     """
 
-    def __init__(self, bundle: Bundle, walls: FloatArray, driver: str, roll: RollCall) -> None:
+    def __init__(
+        self, bundle: Bundle, walls: FloatArray, driver: str, incarnation: Callable[[str], int]
+    ) -> None:
         self._scenario = bundle.scenario
-        self._roll = roll
+        self._incarnation = incarnation
         self._answered: Counter[tuple[str, int]] = Counter()
         self._robots = {topics.config(topics.robot_name(i)): i for i in bundle.scenario.team.robots}
         log = LogBriefing(driver, bundle.scenario_json(), tuple(sorted(bundle.files.items())))
@@ -33,7 +36,7 @@ class Briefings:
     def answer(self, key: str) -> bytes | None:
         """The briefing that a process asks for under this key, None if there is none or it asks on."""
         robot = self._robots.get(key)
-        incarnation = 0 if robot is None else self._roll.incarnation(topics.robot_name(robot))
+        incarnation = 0 if robot is None else self._incarnation(topics.robot_name(robot))
         self._answered[key, incarnation] += 1
         if self._answered[key, incarnation] > ANSWERS:
             return None

@@ -71,7 +71,7 @@ def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str
     robots, silence_s = bundle.scenario.team.robots, bundle.scenario.clock.silence_s
     mail = Mailbox(bus)
     roll = RollCall(mail, robots)
-    briefings = Briefings(bundle, walls, driver, roll)
+    briefings = Briefings(bundle, walls, driver, roll.incarnation)
     open_briefings = partial(bus.answering, topics.config("*"), briefings.answer)
     recording = Recording(bus, mail, silence_s)
     mission = LockStep(

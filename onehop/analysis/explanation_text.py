@@ -13,7 +13,7 @@ MOST_LINES = 200
 """Events and messages that are listed, the last ones: a robot can send thousands in a second."""
 
 LEAST_SNR_DB = -50.0
-"""Below it nothing was received to speak of: out of all reach, cut off, or drowned by what it sent itself."""
+"""Below it nothing was received to speak of: out of all reach, cut off, or drowned by its own frame."""
 
 WHY_LOST = {
     DeliveryStatus.BELOW_THRESHOLD: "the signal was too weak: distance, a wall, a cut link or a jammer",

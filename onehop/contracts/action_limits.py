@@ -7,7 +7,7 @@ only as much as fits (robot_agent/core/team/outbox.py). docs/limits.md has them 
 """
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import pairwise
 
 from onehop.contracts.messages import BROADCAST, Action, Note, NoteValue, Transmission
@@ -46,16 +46,6 @@ _WORD = re.compile(r"[a-z][a-z0-9_]{0,31}")
 
 _WHOLE = Range(-(2**63), 2**63 - 1)
 """Whole numbers of a note: tables hold them in 64 bits."""
-
-_NAMES = (
-    "twist.v", "twist.w", "speed", "remaining_distance", "status.epoch", "status.throughput_bps",
-    "status.threshold_bps", "status.k_rho", "status.error", "status.target_x", "status.target_y",
-)  # fmt: skip
-_LEAST = (-LARGEST, -LARGEST, 0.0, 0.0, 0, -1.0, 0.0, 0.0, 0.0, -LARGEST, -LARGEST)
-_MOST = (
-    LARGEST, LARGEST, LARGEST, LARGEST, LIMIT - 1, LARGEST, LARGEST, LARGEST, LARGEST, LARGEST, LARGEST,
-)  # fmt: skip
-"""Every number of an action outside of its outbox and its notes; NaN and infinity are in no range."""
 
 _TRANSMISSION_BYTES = 64
 """What a transmission takes on the wire beyond its payload, at most [B]."""
@@ -103,16 +93,9 @@ class ActionLimits:
         if action.tick != tick or action.incarnation != incarnation:
             said = f"tick {action.tick} as incarnation {action.incarnation}"
             return f"answered for {said} when asked for tick {tick} as incarnation {incarnation}"
-        status, twist = action.status, action.twist
-        numbers = (
-            twist.v, twist.w, action.speed, action.remaining_distance, status.epoch,
-            status.throughput_bps, status.threshold_bps, status.k_rho, status.error,
-            status.target_x, status.target_y,
-        )  # fmt: skip
-        for value, least, most in zip(numbers, _LEAST, _MOST, strict=True):
-            if not least <= value <= most:
-                return _wrong_number(numbers)
-        wrong = None
+        status, wrong = action.status, None
+        if not _are_sound_numbers(action):
+            return _wrong_number(action)
         if status.members != self._sound_members or status.leader not in self._leaders:
             wrong = self._wrong_roster(status)
         if wrong is None and action.outbox:
@@ -172,9 +155,47 @@ class ActionLimits:
         return few and all(_WHOLE.least <= number <= _WHOLE.most for number in whole)
 
 
-def _wrong_number(numbers: tuple[float, ...]) -> str:
-    """The first of these numbers that is out of its range."""
-    for name, value, least, most in zip(_NAMES, numbers, _LEAST, _MOST, strict=True):
-        if not least <= value <= most:
-            return f"{name} is {value!r}, not a number from {least:g} to {most:g}"
-    raise AssertionError("all numbers are in their ranges")
+def _are_sound_numbers(action: Action) -> bool:
+    """Whether every number outside of outbox and notes is in its range; NaN and infinity are in none.
+
+    What `_ranges` says, in one expression: it is evaluated for every robot at every tick.
+    """
+    most, status, twist = LARGEST, action.status, action.twist
+    return (
+        -most <= twist.v <= most
+        and -most <= twist.w <= most
+        and 0.0 <= action.speed <= most
+        and 0.0 <= action.remaining_distance <= most
+        and 0 <= status.epoch < LIMIT
+        and -1.0 <= status.throughput_bps <= most
+        and 0.0 <= status.threshold_bps <= most
+        and 0.0 <= status.k_rho <= most
+        and 0.0 <= status.error <= most
+        and -most <= status.target_x <= most
+        and -most <= status.target_y <= most
+    )
+
+
+def _ranges(action: Action) -> Iterator[tuple[str, float, Range]]:
+    """The same numbers with their names and ranges."""
+    status, signed, positive = action.status, Range(-LARGEST, LARGEST), Range(0.0, LARGEST)
+    yield "twist.v", action.twist.v, signed
+    yield "twist.w", action.twist.w, signed
+    yield "speed", action.speed, positive
+    yield "remaining_distance", action.remaining_distance, positive
+    yield "status.epoch", status.epoch, Range(0, LIMIT - 1)
+    yield "status.throughput_bps", status.throughput_bps, Range(-1.0, LARGEST)
+    yield "status.threshold_bps", status.threshold_bps, positive
+    yield "status.k_rho", status.k_rho, positive
+    yield "status.error", status.error, positive
+    yield "status.target_x", status.target_x, signed
+    yield "status.target_y", status.target_y, signed
+
+
+def _wrong_number(action: Action) -> str:
+    """The first number that is out of its range; there is one."""
+    return next(
+        f"{name} is {value!r}, not a number from {least:g} to {most:g}"
+        for name, value, (least, most) in _ranges(action)
+        if not least <= value <= most
+    )

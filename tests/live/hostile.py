@@ -2,8 +2,8 @@
 
     python -m tests.live.hostile NAME PASSWORD ENDPOINT MISSION QUERIES [ID]
 
-It opens a session, hears all that is for its name, says "open", asks for its briefing QUERIES times,
-says "asked", and from then on reads nothing: it stops itself. It announces a lease of a minute.
+It opens a session, hears all that is for its name, announces itself, says "open", asks for its briefing
+QUERIES times, says "asked", and from then on reads nothing: it stops itself. Its lease is a minute.
 """
 
 import json
@@ -14,7 +14,8 @@ import sys
 import zenoh
 
 
-def main(name: str, password: str, endpoint: str, mission: str, queries: str, own_id: str = "") -> None:
+def open_session(name: str, password: str, endpoint: str, own_id: str = "") -> zenoh.Session:
+    """A session of a robot's kind, under any id."""
     config = zenoh.Config()
     settings = {
         "mode": "client",
@@ -33,13 +34,19 @@ def main(name: str, password: str, endpoint: str, mission: str, queries: str, ow
         settings["id"] = own_id
     for key, value in settings.items():
         config.insert_json5(key, json.dumps(value))
-    session = zenoh.open(config)
+    return zenoh.open(config)
+
+
+def main(name: str, password: str, endpoint: str, mission: str, queries: str, own_id: str = "") -> None:
+    session = open_session(name, password, endpoint, own_id)
     session.declare_subscriber(f"{mission}/to/{name}/**", lambda _: None)
+    token = session.liveliness().declare_token(f"{mission}/alive/{name}")
     print("open", flush=True)
     for _ in range(int(queries)):
         session.get(f"{mission}/config/{name}", zenoh.handlers.FifoChannel(1), timeout=60.0)
     print("asked", flush=True)
     os.kill(os.getpid(), signal.SIGSTOP)
+    token.undeclare()
 
 
 if __name__ == "__main__":

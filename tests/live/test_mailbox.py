@@ -68,3 +68,14 @@ def test_nothing_breaks_off_a_mission_that_is_over(bus: Bus) -> None:
     mail.close_mission()
     mail.break_off("late")
     assert _waited_s(mail, 0.1) < 0.5
+
+
+def test_whoever_says_what_nobody_reads_is_known(bus: Bus) -> None:
+    mail = Mailbox(bus)
+    strays: list[str] = []
+    mail.read("world", "word", lambda _: None)
+    mail.read_stray(strays.append)
+    for word in ("word", "song"):
+        bus.tell_self(word)
+    assert mail.wait(lambda: bool(strays), LONG_S)
+    assert strays == ["world"]

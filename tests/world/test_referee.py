@@ -271,3 +271,17 @@ def test_an_aborted_mission_counts_its_collisions() -> None:
     outcome = Referee(PLAN).close("aborted", "interrupted", at(7, AT_GOAL, {}, collisions=3))
     assert (outcome.outcome, outcome.reason, outcome.collisions) == ("aborted", "interrupted", 3)
     assert outcome.arrived == ()
+
+
+def test_whatever_a_robot_says_of_giving_others_up_its_last_word_counts() -> None:
+    referee = Referee(PLAN)
+    referee.judge(at(0, AT_GOAL, all_stopped(), 1.0), False)
+    for number in range(1000):
+        referee.on_notes(2, given_up(1, f"reason {number}"))
+        referee.on_notes(2, given_up(99, "nobody of this team"))
+    pair = {robot: status(members=(2, 3), epoch=2) for robot in (2, 3)}
+    alone = {1: status(leader=1, members=(1,), epoch=5, shape=Shape.SOLO)}
+    referee.judge(at(10, AT_GOAL, pair | alone, 1.0), False)
+    outcome = judge(referee, at(20, AT_GOAL, pair | alone))
+    assert outcome is not None
+    assert outcome.lost == (Lost(1, 0.5, "given up by robot 2: reason 999"),)
