@@ -30,7 +30,7 @@ MESSAGES_PER_ROBOT = 4
 a beacon and a call to all of them."""
 
 ANSWERS = 64
-"""Messages a tick beyond these, for acknowledgements: as many as a card's queue holds by default."""
+"""Messages a tick beyond these, for acknowledgements: as many as the queue of a NIC holds by default."""
 
 NOTES = 32
 """Notes a tick. The most eventful ticks of an honest robot have about eight."""
@@ -57,7 +57,7 @@ _STATUS_BYTES = 512
 class ActionLimits:
     """The limits of one team. robots: its ids.
 
-    messages: how many a robot may hand to its card in a tick; a broadcast counts once for each other
+    messages: how many a robot may hand to its NIC in a tick; a broadcast counts once for each other
     robot, since each of them has a verdict on it. action_bytes: no action within the limits is longer.
     """
 
