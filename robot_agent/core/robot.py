@@ -17,7 +17,7 @@ from robot_agent.core.motion.detour import SlotTask
 from robot_agent.core.motion.gains import make_policy
 from robot_agent.core.motion.leader import PathfinderMaker, TeamView
 from robot_agent.core.motion.robot_motion import RobotMotion
-from robot_agent.core.motion.slot import Settling, shape_in_force, slot_pose
+from robot_agent.core.motion.slot import Settling, SlotFinder
 from robot_agent.core.planning import PlannerStatus, make_pathfinder
 from robot_agent.core.team.events import BecameFollower, BecameLeader, NextMeasured, TeamEvent
 from robot_agent.core.team.leader_view import LeaderView
@@ -42,6 +42,7 @@ class Robot:
         self._briefing = briefing
         rng = generator(briefing.seed, f"robot/{briefing.robot}/{briefing.incarnation}")
         self._motion = RobotMotion(briefing, make_pathfinder, rng)
+        self._slots = SlotFinder(briefing.team)
         self._settling = Settling(briefing.period_ns / NANOSECONDS)
         self._threshold = required_throughput_bps(briefing)
         self._protocol: TeamProtocol | None = None
@@ -95,7 +96,7 @@ class Robot:
             epoch=state.roster.epoch,
             leader=state.leader,
             members=state.roster.members,
-            shape=shape_in_force(state, self._briefing.team).shape,
+            shape=self._slots.shape(state).shape,
             throughput_bps=-1.0 if isinstance(state.part, Leading) else self._throughput,
             threshold_bps=self._threshold,
             k_rho=self._k_rho,
@@ -166,7 +167,7 @@ class Robot:
             self._in_position = False
             self._target = (pose.x, pose.y)
             return self._motion.follow(pose, scan, nearest, None)
-        target = slot_pose(state, self._briefing.team, view, leader)
+        target = self._slots.slot(state, view, leader)
         goal = self._briefing.goal
         self._target = (target.x, target.y)
         self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)

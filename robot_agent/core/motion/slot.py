@@ -20,26 +20,42 @@ NEARER = 0.05
 """Coming nearer by less than this is not coming nearer [m]."""
 
 
-def shape_in_force(state: TeamState, team: TeamSection) -> Formation:
-    """The formation of the roster in force, a column in a narrow passage."""
-    spacing = team.narrow_spacing if state.narrow else team.spacing
-    return formation(state.roster.members, state.narrow, spacing)
+class SlotFinder:
+    """Shape and slot of one robot; kept until roster, order or the leader's last pose changes."""
 
+    def __init__(self, team: TeamSection) -> None:
+        self._team = team
+        self._shape_key: tuple[tuple[int, ...], bool] | None = None
+        self._shape = formation((1,))
+        self._slot_key: tuple[Pose, tuple[int, ...], bool, bool] | None = None
+        self._slot = Pose(0.0, 0.0, 0.0)
 
-def slot_pose(state: TeamState, team: TeamSection, view: LeaderView, leader: Pose) -> Pose:
-    """The slot of this robot in the map frame, from the leader's last pose.
+    def shape(self, state: TeamState) -> Formation:
+        """The formation of the roster in force, a column in a narrow passage."""
+        key = state.roster.members, state.narrow
+        if key != self._shape_key:
+            spacing = self._team.narrow_spacing if state.narrow else self._team.spacing
+            self._shape_key, self._shape = key, formation(*key, spacing)
+        return self._shape
 
-    Who has no slot in the formation (it joins, or led until now) keeps a spacing behind the leader.
-    """
-    shape = shape_in_force(state, team)
-    if isinstance(state.part, Joining) or shape.leader == state.robot:
-        x, y = to_map(leader, -team.spacing, 0.0)
-    else:
-        slot = shape.slot(state.robot)
-        if state.narrow and len(view.trail) > 1:
-            return behind(leader, view.trail, -slot.x)
-        x, y = to_map(leader, slot.x, slot.y)
-    return Pose(x, y, leader.heading)
+    def slot(self, state: TeamState, view: LeaderView, leader: Pose) -> Pose:
+        """The slot of this robot in the map frame, from the leader's last pose."""
+        key = leader, state.roster.members, state.narrow, isinstance(state.part, Joining)
+        if key != self._slot_key:
+            self._slot_key, self._slot = key, self._placed(state, view, leader)
+        return self._slot
+
+    def _placed(self, state: TeamState, view: LeaderView, leader: Pose) -> Pose:
+        """Who has no slot in the formation (it joins, or led until now) keeps a spacing behind."""
+        shape = self.shape(state)
+        if isinstance(state.part, Joining) or shape.leader == state.robot:
+            x, y = to_map(leader, -self._team.spacing, 0.0)
+        else:
+            slot = shape.slot(state.robot)
+            if state.narrow and len(view.trail) > 1:
+                return behind(leader, view.trail, -slot.x)
+            x, y = to_map(leader, slot.x, slot.y)
+        return Pose(x, y, leader.heading)
 
 
 class Settling:

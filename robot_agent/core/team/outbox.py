@@ -37,10 +37,14 @@ class Outbox:
 
     def take_outbox(self) -> tuple[Transmission, ...]:
         """What is to be sent, once."""
+        if not self._outbox:
+            return ()
         outbox, self._outbox = self._limits.fitting(self._outbox), []
         return tuple(outbox)
 
     def take_notes(self) -> tuple[Note, ...]:
         """What is to be told, once."""
+        if not self._notes:
+            return ()
         notes, self._notes = self._notes[:PROTOCOL_NOTES], []
         return tuple(notes)

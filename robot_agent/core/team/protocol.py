@@ -69,6 +69,8 @@ class TeamProtocol:
 
     def take_events(self) -> tuple[TeamEvent, ...]:
         """What happened since the last call, in order."""
+        if not self.state.events:
+            return ()
         events, self.state.events = tuple(self.state.events), []
         return events
 
