@@ -95,6 +95,8 @@ def run(
 ) -> None:
     """Run a mission: every robot a process on the bus, recorded.
 
+    Ctrl-C, SIGTERM and SIGHUP end it in order, with its log and summary: exit status 130, 143, 129.
+
     Example: onehop run scenarios/map1.toml --seed 7 --set team.size=4
     """
     from onehop.commands import run as command
