@@ -123,6 +123,7 @@ def replay(
 ) -> None:
     """Re-execute a log and compare every output with the recorded one.
 
+    Exit status 1 too when nothing was compared, or not all that was said in the mission.
     With --robot and --set: where that robot would first have acted otherwise.
 
     Example: onehop replay runs/demo/mission.mcap --robot 3
@@ -300,7 +301,7 @@ def salvage(
     out: Annotated[Path, Option("-o", "--out", metavar="LOG", help="The sound log to write.")],
     as_json: AsJson = False,
 ) -> None:
-    """Make a sound log of a torn one, and say what was lost.
+    """Make a sound log of a torn or damaged one: every whole tick, and what was lost.
 
     Example: onehop salvage runs/demo/mission.mcap -o saved.mcap
     """

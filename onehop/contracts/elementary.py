@@ -135,6 +135,8 @@ def _settled_all(
 
 
 def _on_grid(exact: Callable[..., Decimal], *arguments: float) -> float:
+    if any(x != x for x in arguments):
+        return math.nan  # no series ends on it
     with localcontext(prec=_DIGITS):
         scaled = exact(*(Decimal(x) for x in arguments)) * 2**_BITS
         return int(scaled.to_integral_value()) / 2.0**_BITS

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from onehop.analysis.report.election_rows import elections
 from onehop.analysis.report.report_data import ReportData
 from onehop.contracts.messages import LeadershipTerm
-from onehop.contracts.printable import in_words, printable
+from onehop.contracts.printable import in_words
 from onehop.contracts.team import loss_in_words
 
 MOST_NOTES = 50
@@ -31,12 +31,14 @@ class NarrativeEvent(NamedTuple):
 
 def narrative(report: ReportData) -> list[NarrativeEvent]:
     """All events in order of time."""
+    notes, going_on = _told_notes(report)
     events = [
         *_beginning(report),
-        *_notes(report),
-        *_columns(report),
-        *_losses_of_leaders(report),
-        *_handovers(report),
+        *_sentences(notes),
+        *going_on,
+        *_columns(notes),
+        *_losses_of_leaders(report, notes),
+        *_handovers(report, notes),
         *_departures(report),
         *(
             NarrativeEvent(span.start_s, 2, _fault(span.what, span.end_s - span.start_s))
@@ -100,31 +102,47 @@ def _beginning(report: ReportData) -> Iterator[NarrativeEvent]:
         )  # fmt: skip
 
 
-def _notes(report: ReportData) -> Iterator[NarrativeEvent]:
-    """What robots noted; of one that notes the same kind over and over, the first ones."""
-    told: Counter[tuple[int, str]] = Counter()
-    for at_s, robot, kind, data in report.tables["notes"].rows("time_s", "robot", "kind", "data"):
-        event = _note(at_s, robot, kind, data)
-        if event is None:
+class _Noted(NamedTuple):
+    """One note of a robot."""
+
+    at_s: float
+    robot: int
+    kind: str
+    data: dict[str, Any]
+
+
+def _told_notes(report: ReportData) -> tuple[list[_Noted], list[NarrativeEvent]]:
+    """Notes that the narrative is made of, and who noted one kind more often than that is told."""
+    told: list[_Noted] = []
+    going_on: list[NarrativeEvent] = []
+    number: Counter[tuple[int, str]] = Counter()
+    rows = report.tables["notes"].rows("time_s", "robot", "kind", "data")
+    for note in map(_Noted._make, rows):
+        if note.kind == "mode" and note.data.get("on") != "formed":
             continue
-        told[robot, kind] += 1
-        if told[robot, kind] <= MOST_NOTES:
-            yield event
-        elif told[robot, kind] == MOST_NOTES + 1:
-            yield NarrativeEvent(at_s, 0, f"Robot {robot} goes on with notes {printable(kind)!r}.")
+        number[note.robot, note.kind] += 1
+        if number[note.robot, note.kind] <= MOST_NOTES:
+            told.append(note)
+        elif number[note.robot, note.kind] == MOST_NOTES + 1 and note.kind in _TOLD_KINDS:
+            what = f"Robot {note.robot} notes {note.kind.replace('_', ' ')!r} again and again."
+            going_on.append(NarrativeEvent(note.at_s, 0, what))
+    return told, going_on
 
 
-def _note(at_s: float, robot: int, kind: str, data: dict[str, Any]) -> NarrativeEvent | None:
-    if kind == "mode" and data.get("on") == "formed":
-        return NarrativeEvent(at_s, 1, f"The formation stands: robot {robot} sets off towards the goal.")
-    if kind not in _SENTENCES:
-        return None
-    weight, sentence = _SENTENCES[kind]
-    blanks = _Blanks((key, in_words(value)) for key, value in data.items())
-    blanks["robot"] = str(robot)
-    blanks["robots"] = _robots(data.get("robots", ()))
-    blanks["why"] = loss_in_words(in_words(data.get("reason", "")))
-    return NarrativeEvent(at_s, weight, sentence.format_map(blanks))
+def _sentences(notes: list[_Noted]) -> Iterator[NarrativeEvent]:
+    """Each note that is told by itself."""
+    for at_s, robot, kind, data in notes:
+        if kind == "mode":
+            yield NarrativeEvent(
+                at_s, 1, f"The formation stands: robot {robot} sets off towards the goal."
+            )
+        elif kind in _SENTENCES:
+            weight, sentence = _SENTENCES[kind]
+            blanks = _Blanks((key, in_words(value)) for key, value in data.items())
+            blanks["robot"] = str(robot)
+            blanks["robots"] = _robots(data.get("robots", ()))
+            blanks["why"] = loss_in_words(in_words(data.get("reason", "")))
+            yield NarrativeEvent(at_s, weight, sentence.format_map(blanks))
 
 
 _SENTENCES = {
@@ -137,11 +155,14 @@ _SENTENCES = {
 }
 """Kind of note -> weight and sentence; the robot's own data fill the blanks."""
 
+_TOLD_KINDS = (*_SENTENCES, "mode", "narrow", "lost_leader")
+"""Kinds of notes of which the narrative is made."""
 
-def _columns(report: ReportData) -> Iterator[NarrativeEvent]:
+
+def _columns(notes: list[_Noted]) -> Iterator[NarrativeEvent]:
     """Each narrow passage as one event, from the order to drive in column to its end."""
     begun: dict[int, float] = {}
-    for at_s, robot, kind in report.tables["notes"].rows("time_s", "robot", "kind"):
+    for at_s, robot, kind, _ in notes:
         if kind == "narrow":
             begun[robot] = at_s
         elif kind == "wide" and robot in begun:
@@ -154,13 +175,11 @@ def _column(at_s: float, leader: int, until: str) -> NarrativeEvent:
     return NarrativeEvent(at_s, 1, f"Too narrow for the shape: leader {leader} orders a column{until}.")
 
 
-def _losses_of_leaders(report: ReportData) -> Iterator[NarrativeEvent]:
+def _losses_of_leaders(report: ReportData, notes: list[_Noted]) -> Iterator[NarrativeEvent]:
     """Lost_Leader of several robots within a Next period is one event; the election follows from it."""
     period = report.log.scenario.team.next_period
     open_group: tuple[float, str, list[int]] | None = None
-    notes = report.tables["notes"]
-    losses = notes.where(notes["kind"] == "lost_leader")
-    for at_s, robot, data in losses.rows("time_s", "robot", "data"):
+    for at_s, robot, _, data in (note for note in notes if note.kind == "lost_leader"):
         leader = in_words(data.get("leader", "?"))
         if open_group and leader == open_group[1] and at_s - open_group[0] <= period:
             open_group[2].append(robot)
@@ -195,13 +214,9 @@ def _successor(terms: list[LeadershipTerm], at_s: float, leader: str) -> Leaders
     return next(later, None)
 
 
-def _handovers(report: ReportData) -> Iterator[NarrativeEvent]:
+def _handovers(report: ReportData, notes: list[_Noted]) -> Iterator[NarrativeEvent]:
     """Changes of the leader without a loss of the old one: a new roster has another median."""
-    lost = [
-        (at_s, data.get("leader"))
-        for at_s, kind, data in report.tables["notes"].rows("time_s", "kind", "data")
-        if kind == "lost_leader"
-    ]
+    lost = [(note.at_s, note.data.get("leader")) for note in notes if note.kind == "lost_leader"]
     for before, after in elections(report)[:MOST_HANDOVERS]:
         if any(who == before.leader and 0.0 <= after.at_s - at_s <= 1.0 for at_s, who in lost):
             continue

@@ -81,3 +81,19 @@ def test_what_is_computed_anew_is_the_library_s_to_the_last_place(x: float) -> N
     assert float(elementary._exact_atan2(Decimal(x), Decimal(-1))) == pytest.approx(
         math.atan2(x, -1.0), rel=3e-16
     )
+
+
+@pytest.mark.parametrize(
+    ("function", "arguments"),
+    [
+        (elementary.sin, (math.nan,)),
+        (elementary.cos, (math.nan,)),
+        (elementary.log10, (math.nan,)),
+        (elementary.atan2, (math.nan, 1.0)),
+        (elementary.atan2, (1.0, math.nan)),
+    ],
+)
+def test_what_is_no_number_stays_none(
+    function: Callable[..., float], arguments: tuple[float, ...]
+) -> None:
+    assert math.isnan(function(*arguments))
