@@ -1,0 +1,74 @@
+"""Whatever comes from outside is accepted or refused in one line: no traceback, no hang, 2 GB at most."""
+
+import os
+import time
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from onehop.contracts.errors import OnehopError
+from tests.fuzz import sandbox
+from tests.fuzz.fuzzer import GOOD, SHARES, Fuzzer, jobs_of_this_machine
+from tests.fuzz.sandbox import MEMORY_BYTES, Child, Outcome
+
+CASES = 300
+SEED = 1
+
+
+@pytest.fixture(scope="module")
+def fuzzer(tmp_path_factory: pytest.TempPathFactory) -> Fuzzer:
+    return Fuzzer(tmp_path_factory.mktemp("fuzz"), SEED)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", SHARES)
+def test_every_mutated_input_is_accepted_or_refused_in_one_line(fuzzer: Fuzzer, kind: str) -> None:
+    cases = range(CASES * SHARES[kind] // sum(SHARES.values()))
+    results = list(fuzzer.run(kind, cases, jobs_of_this_machine()))
+    wrong = [result for result in results if result.ended.outcome not in GOOD]
+    assert not wrong, "\n".join(f"{r.kind} {r.number}: {r.ended.outcome} {r.ended.words}" for r in wrong)
+    counts = Counter(result.ended.outcome for result in results)
+    assert min(counts[outcome] for outcome in GOOD) >= len(cases) // 10
+
+
+def _refuse() -> None:
+    raise OnehopError("no")
+
+
+def _refuse_in_two_lines() -> None:
+    raise OnehopError("no\nno")
+
+
+def _fail() -> None:
+    raise KeyError("x")
+
+
+def _take_memory() -> None:
+    bytearray(MEMORY_BYTES + 1)
+
+
+def _loop() -> None:
+    while True:
+        pass
+
+
+@pytest.mark.parametrize(
+    ("work", "outcome"),
+    [
+        (time.process_time, Outcome.ACCEPTED),
+        (_refuse, Outcome.REFUSED),
+        (_refuse_in_two_lines, Outcome.TRACEBACK),
+        (_fail, Outcome.TRACEBACK),
+        (_take_memory, Outcome.MEMORY),
+        (_loop, Outcome.HANG),
+        (os.abort, Outcome.KILLED),
+    ],
+    ids=lambda value: getattr(value, "__name__", str(value)),
+)
+def test_the_sandbox_tells_each_end_from_the_others(
+    work: object, outcome: Outcome, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(sandbox, "CPU_S", 1)
+    assert callable(work)
+    assert Child(work, tmp_path / "account").wait().outcome is outcome
