@@ -50,11 +50,11 @@ class Ended(NamedTuple):
 class Child:
     """A case that runs. work: raises OnehopError for what it refuses. account: file for its output."""
 
-    def __init__(self, work: Callable[[], None], account: Path) -> None:
+    def __init__(self, work: Callable[[], None], account: Path, cpu_s: int = CPU_S) -> None:
         self._account = account
         self._pid = os.fork()
         if self._pid == 0:
-            _run_and_leave(work, account)
+            _run_and_leave(work, account, cpu_s)
 
     def wait(self) -> Ended:
         """Wait for its end."""
@@ -63,10 +63,10 @@ class Child:
         return Ended(_outcome(status), words, usage.ru_utime + usage.ru_stime)
 
 
-def _run_and_leave(work: Callable[[], None], account: Path) -> None:
+def _run_and_leave(work: Callable[[], None], account: Path, cpu_s: int) -> None:
     status = _BROKEN
     try:
-        _limit()
+        _limit(cpu_s)
         _write_to(account)
         work()
         status = _ACCEPTED
@@ -84,11 +84,11 @@ def _run_and_leave(work: Callable[[], None], account: Path) -> None:
         os._exit(status)
 
 
-def _limit() -> None:
+def _limit(cpu_s: int) -> None:
     pages = int(Path("/proc/self/statm").read_text().split()[0])
     memory = pages * resource.getpagesize() + MEMORY_BYTES
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
-    resource.setrlimit(resource.RLIMIT_CPU, (CPU_S, CPU_S + 1))
+    resource.setrlimit(resource.RLIMIT_CPU, (cpu_s, cpu_s + 1))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     signal.signal(signal.SIGALRM, signal.SIG_DFL)
     signal.alarm(WALL_S)

@@ -1,14 +1,14 @@
-"""Whatever comes from outside is accepted or refused in one line: no traceback, no hang, 2 GB at most."""
+"""Whatever comes from outside is accepted or refused in one line: no traceback, hang or flood."""
 
 import os
 import time
 from collections import Counter
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
 from onehop.contracts.errors import OnehopError
-from tests.fuzz import sandbox
 from tests.fuzz.fuzzer import GOOD, SHARES, Fuzzer, jobs_of_this_machine
 from tests.fuzz.sandbox import MEMORY_BYTES, Child, Outcome
 
@@ -45,7 +45,7 @@ def _fail() -> None:
 
 
 def _take_memory() -> None:
-    bytearray(MEMORY_BYTES + 1)
+    bytearray(2 * MEMORY_BYTES)
 
 
 def _loop() -> None:
@@ -67,8 +67,6 @@ def _loop() -> None:
     ids=lambda value: getattr(value, "__name__", str(value)),
 )
 def test_the_sandbox_tells_each_end_from_the_others(
-    work: object, outcome: Outcome, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    work: Callable[[], None], outcome: Outcome, tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(sandbox, "CPU_S", 1)
-    assert callable(work)
-    assert Child(work, tmp_path / "account").wait().outcome is outcome
+    assert Child(work, tmp_path / "account", cpu_s=1).wait().outcome is outcome
