@@ -14,7 +14,8 @@ NUMBERS = (
 PIECES = (
     b"\0", b"\xff" * 4, b"\t", b"\n", b"\r\n", b"#", b"=", b"[", b"]]", b"{", b'"', b"'''", b"*a",
     b"&a ", b"!!python/object:os.system ", b"\xef\xbb\xbf", b"\x1b[2J",
-    "\u202e\u2028é".encode(), b"<script>", b"[" * 3000, b"{a=" * 500, b"x" * 100_000, b"1," * 20_000, b"\x93" * 2000, b"true", b'""', b"[]",
+    "\u202e\u2028é".encode(), b"<script>", b"[" * 3000, b"{a=" * 500, b"x" * 100_000, b"1," * 20_000,
+    b"\x93" * 2000, b"true", b'""', b"[]",
 )  # fmt: skip
 """What a reader may stumble over."""
 

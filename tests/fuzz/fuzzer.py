@@ -1,5 +1,6 @@
 """Runs cases of every kind, some at a time, and tells how they ended."""
 
+import importlib
 import os
 import shutil
 from collections import deque
@@ -17,6 +18,9 @@ from tests.fuzz.sandbox import Child, Ended, Outcome
 
 SHARES = {"scenario": 3, "map": 3, "log": 1, "message": 3}
 """Of how many cases in ten a kind is; a log takes ten times as long as any other."""
+
+COMMANDS = ("run", "plan", "replay", "explain", "diff", "salvage", "view", "report")
+"""Whose modules are loaded once, before any case."""
 
 GOOD = (Outcome.ACCEPTED, Outcome.REFUSED)
 
@@ -37,6 +41,9 @@ class Fuzzer:
         self._folder, self._seed = folder, seed
         recorded = folder / "recorded.mcap"
         record(recorded)
+        maps.load_kernels(folder)
+        for name in COMMANDS:
+            importlib.import_module(f"onehop.commands.{name}")
         logs, messages = Logs(recorded), Messages(recorded)
         self._kinds = {
             "scenario": Kind(scenarios.make, scenarios.read),

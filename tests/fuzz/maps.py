@@ -1,8 +1,11 @@
 """Map files: ROS with each kind of picture, MovingAI grids; one leader drives on what is accepted."""
 
+import contextlib
+import io
 from pathlib import Path
 from random import Random
 
+from onehop.commands.plan import plan
 from tests.fuzz.commands import call
 from tests.fuzz.damage import damaged
 from tests.onehop.maps.pictures import YAML, encoded
@@ -50,6 +53,16 @@ def make(folder: Path, random: Random) -> None:
         yaml = damaged(yaml, (*DESCRIPTIONS, GRID), random)
     (folder / "m.yaml").write_bytes(yaml)
     (folder / "m.pgm").write_bytes(picture)
+
+
+def load_kernels(folder: Path) -> None:
+    """Plan a way on each good kind of map here, so that no case has to load what that takes."""
+    files = {"m.map": GRID, "m.yaml": DESCRIPTIONS[0], "m.pgm": PICTURES[0]}
+    for name, content in files.items():
+        (folder / name).write_bytes(content)
+    for name in ("m.map", "m.yaml"):
+        with contextlib.redirect_stdout(io.StringIO()):
+            plan(folder / name, "3,6", "9,6", None, None, None, ["clock.limit_s=0.15"], None, True)
 
 
 def read(folder: Path) -> None:
