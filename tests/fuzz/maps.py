@@ -34,30 +34,54 @@ PICTURES = (
 GRID = f"type octile\nheight {_SIZE}\nwidth {_SIZE}\nmap\n".encode() + b"".join(
     bytes(ord("@") if grey == _WALL else ord(".") for grey in row) + b"\n" for row in _CELLS
 )
-DESCRIPTIONS = tuple(
-    YAML.replace("-1.0, -2.0", "0.0, 0.0").encode() + extra
-    for extra in (b"", b"mode: scale\n", b"mode: raw\n", b"mode: trinary\n")
-)
+
+_KEYS = {
+    "resolution": ("0.5", "1e-3", "5", "1e3", "0.25"),
+    "origin": ("[0.0, 0.0, 0.0]", "[-1, -1, 0]", "[0, 0, 1.5]", "[2e6, 0, 0]", "[0, 0]"),
+    "negate": ("0", "1", "true"),
+    "occupied_thresh": ("0.65", "0", "1", "0.196"),
+    "free_thresh": ("0.196", "0", "1", "0.65"),
+    "mode": ("trinary", "scale", "raw", "other"),
+}
+"""What a description may say: most of it is sound."""
 
 
 def make(folder: Path, random: Random) -> None:
-    """Write m.yaml and m.pgm, or m.map; one of the files is damaged, or both."""
-    grid, yaml, picture = GRID, random.choice(DESCRIPTIONS), random.choice(PICTURES)
-    what = random.randrange(8)
-    if what < 2:
-        (folder / "m.map").write_bytes(damaged(grid, (grid, SMALL_GRID), random))
+    """Write m.map, or m.yaml and m.pgm: as a mapper could make them, most of them damaged after that."""
+    if random.random() < 0.3:
+        grid = _repainted(GRID, b".G@STWO", random)
+        if random.random() < 0.6:
+            grid = damaged(grid, (GRID, SMALL_GRID), random)
+        (folder / "m.map").write_bytes(grid)
         return
-    if what != 2:
+    lines = {"image": "m.pgm", **{key: values[0] for key, values in _KEYS.items()}}
+    for key in random.sample(list(_KEYS), random.choice((0, 1, 1, 3))):
+        lines[key] = random.choice(_KEYS[key])
+    yaml = "".join(f"{key}: {value}\n" for key, value in lines.items()).encode()
+    picture = random.choice(PICTURES)
+    if random.random() < 0.5:
+        picture = _repainted(PICTURES[0], bytes(range(256)), random)
+    if random.random() < 0.3:
         picture = damaged(picture, (*PICTURES, *SMALL_PICTURES), random)
-    if what < 5:
-        yaml = damaged(yaml, (*DESCRIPTIONS, GRID), random)
+    if random.random() < 0.3:
+        yaml = damaged(yaml, (yaml, YAML.encode(), GRID), random)
     (folder / "m.yaml").write_bytes(yaml)
     (folder / "m.pgm").write_bytes(picture)
 
 
+def _repainted(data: bytes, colours: bytes, random: Random) -> bytes:
+    """A picture, or a grid, with other cells; its header and its lines stay."""
+    changed, header = bytearray(data), len(data) - _SIZE * _SIZE
+    for _ in range(random.choice((1, 10, 300))):
+        place = random.randrange(header, len(data))
+        if changed[place] != ord("\n"):
+            changed[place] = random.choice(colours)
+    return bytes(changed)
+
+
 def load_kernels(folder: Path) -> None:
     """Plan a way on each good kind of map here, so that no case has to load what that takes."""
-    files = {"m.map": GRID, "m.yaml": DESCRIPTIONS[0], "m.pgm": PICTURES[0]}
+    files = {"m.map": GRID, "m.yaml": YAML.encode(), "m.pgm": PICTURES[0]}
     for name, content in files.items():
         (folder / name).write_bytes(content)
     for name in ("m.map", "m.yaml"):
