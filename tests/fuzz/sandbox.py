@@ -13,7 +13,7 @@ from typing import NamedTuple
 from onehop.contracts.errors import OnehopError
 
 MEMORY_BYTES = 2 << 30
-"""What a case may take beyond what the fuzzer itself has [B]."""
+"""What a case may take [B]: of memory in all, and of addresses beyond those that the fuzzer has."""
 
 CPU_S = 10
 """Processor time of a case at most [s]; a good input takes less than one."""
@@ -60,7 +60,10 @@ class Child:
         """Wait for its end."""
         _, status, usage = os.wait4(self._pid, 0)
         words = self._account.read_text(errors="replace")[-_SHOWN:]
-        return Ended(_outcome(status), words, usage.ru_utime + usage.ru_stime)
+        outcome = _outcome(status)
+        if usage.ru_maxrss * 1024 > MEMORY_BYTES:  # Linux counts it in KiB
+            outcome = Outcome.MEMORY
+        return Ended(outcome, words, usage.ru_utime + usage.ru_stime)
 
 
 def _run_and_leave(work: Callable[[], None], account: Path, cpu_s: int) -> None:
