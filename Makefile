@@ -7,7 +7,7 @@ LOWEST_PYTHON ?= python3.11
 LOWEST := .venv-lowest
 LOWEST_STAMP := $(LOWEST)/.installed
 
-.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign bench compose-demo clean
+.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign bench fuzz compose-demo clean
 
 setup: $(STAMP)
 
@@ -59,6 +59,9 @@ campaign: setup  ## what takes minutes and stays out of CI
 
 bench: setup
 	for program in bench/*.py; do $(BIN)/python $$program || exit 1; done
+
+fuzz: setup  ## 5,000 mutated scenarios, maps, logs and messages; what went wrong stays in runs/fuzz
+	$(BIN)/python -m tests.fuzz --cases 5000 --seed 1
 
 compose-demo: setup  ## the same mission as containers; makes a local base image where no registry is reached
 	./docker/compose-demo.sh

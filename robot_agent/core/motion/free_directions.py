@@ -55,8 +55,8 @@ class FreeDirections:
 
     def __init__(self, body: RobotSection, beams: Beams) -> None:
         self._radii = tuple(body.radius + clearance for clearance in CLEARANCES)
-        self._bundle = max(1, round(BUNDLE / beams.spacing))
-        bundles = max(1, len(beams.angles) // self._bundle)
+        self._bundle = min(beams.spanned(BUNDLE), len(beams.angles))
+        bundles = len(beams.angles) // self._bundle
         self._beams = bundles * self._bundle
         self._angles: FloatArray = (
             beams.angles[: self._beams].reshape(bundles, self._bundle).mean(axis=1)

@@ -79,3 +79,14 @@ def test_a_gap_is_as_wide_as_it_is_to_within_half_a_bundle_at_any_resolution(cou
         gap = np.abs(beams.angles - middle) < half
         free.look(np.where(gap, np.inf, 1.5).astype(np.float32))
         assert free.free_distance(middle) == LOOKAHEAD, degrees
+
+
+@pytest.mark.parametrize("count", [2, 10, 181])
+@pytest.mark.parametrize("fov_deg", [1.0, 2.0])
+def test_a_view_narrower_than_a_bundle_is_one_bundle(count, fov_deg):
+    body = RobotSection(laser_beams=count, laser_fov_deg=fov_deg)
+    free = FreeDirections(body, Beams(body))
+    ranges = np.full(count, np.inf, dtype=np.float32)
+    ranges[-1] = 1.0
+    free.look(ranges)
+    assert free.free_distance(0.0) == pytest.approx(1.0 - BODY.radius - CLEARANCES[0])
