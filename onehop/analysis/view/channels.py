@@ -35,6 +35,9 @@ those who start to look in the middle."""
 WALL_STEP = 0.25
 """Distance between two points of a wall [m]."""
 
+FARTHEST = 1e9
+"""No map reaches so far [m]; clouds of points are float32."""
+
 MOST_EVENTS = 100
 """Notes of one robot and tick that are shown: a team has a few."""
 
@@ -102,7 +105,7 @@ class ViewerChannels:
     def _poses(self, truth: Truth) -> dict[int, Pose]:
         for one in truth.present:
             numbers = (one.pose.x, one.pose.y, one.pose.heading)
-            if one.robot not in self._colours or not all(map(math.isfinite, numbers)):
+            if one.robot not in self._colours or not all(abs(x) < FARTHEST for x in numbers):
                 raise DecodeError(f"tick {truth.tick}, truth: no robot of the team is there")
         return {one.robot: one.pose for one in truth.present}
 

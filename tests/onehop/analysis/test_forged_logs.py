@@ -40,6 +40,16 @@ def test_a_robot_that_is_not_in_the_team_is_refused(log_path: Path, tmp_path: Pa
     assert not (tmp_path / "view.mcap").exists()
 
 
+@pytest.mark.parametrize("x", [float("nan"), float("inf"), 1e308])
+def test_a_pose_that_is_nowhere_is_not_shown(log_path: Path, tmp_path: Path, x: float) -> None:
+    def stray(truth: dict[str, Any]) -> None:
+        truth["present"][0]["pose"]["x"] = x
+
+    forged = _forged(log_path, tmp_path / "x.mcap", 9, "truth", stray)
+    with pytest.raises(LogError, match="tick 9, truth: no robot of the team is there"):
+        write_view(forged, tmp_path / "view.mcap")
+
+
 def test_a_message_that_is_none_is_refused_with_its_place(
     log: Log, log_path: Path, tmp_path: Path
 ) -> None:
