@@ -65,6 +65,10 @@ _COORDINATES = (0.0, 1.0, 8.0, 20.0, -1e7, 1e7, 1e-9)
 _SPEEDS = (0.0, 1.0, 1e-300, LARGEST)
 
 
+_AIRTIME_NS = 1_000_000
+"""What a payload takes on the air [ns], about that of 800 bytes at 11 Mbit/s."""
+
+
 class Messages:
     """Messages made of those of a recorded mission."""
 
@@ -131,7 +135,9 @@ class Messages:
             robot = Robot(robot_briefing(scenario, me, 0))
             for tick in range(12):
                 now = tick * scenario.clock.period_ns
-                heard = Reception(1 + tick % 4, payload, now, now, 1, 1, 20.0, 0.0, MSDU_BYTES)
+                heard = Reception(
+                    1 + tick % 4, payload, now - _AIRTIME_NS, now, 1, 1, 20.0, 0.0, MSDU_BYTES
+                )
                 inbox = (heard,) if tick % 3 else ()
                 percept = Percept(tick, now, Pose(8.0, 8.0, 0.0), Twist(0.0, 0.0), scan, inbox)
                 action = robot.step(percept)
