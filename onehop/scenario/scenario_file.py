@@ -115,8 +115,12 @@ def _read_toml(path: Path) -> dict[str, Any]:
         raise ScenarioError(
             str(path), error.strerror or "cannot be read", "name a scenario file that exists"
         ) from None
-    except ValueError as error:  # TOML, UTF-8, or an integer of thousands of digits
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise ScenarioError(str(path), f"not TOML ({error})", "see scenarios/map1.toml") from None
+    except ValueError:  # Python's int() of thousands of digits
+        raise ScenarioError(
+            str(path), "holds a whole number of thousands of digits", "whole numbers below 2^63"
+        ) from None
     except RecursionError:
         raise ScenarioError(str(path), "nested too deeply", "see scenarios/map1.toml") from None
 

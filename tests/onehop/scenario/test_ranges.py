@@ -121,14 +121,24 @@ def test_a_byte_order_mark_is_read_over(tmp_path: Path) -> None:
     assert scenario_file.load(path).scenario.name == "small"
 
 
-@pytest.mark.parametrize("content", [b"x = " + b"[" * 3000, b"x = " + b"9" * 5000, b"x = \xff"])
-def test_what_no_toml_reader_takes_is_refused_in_one_line(tmp_path: Path, content: bytes) -> None:
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"x = " + b"[" * 3000, "nested too deeply"),
+        (b"x = " + b"9" * 5000, "a whole number of thousands of digits; whole numbers below"),
+        (b"x = \xff", "not TOML"),
+    ],
+)
+def test_what_no_toml_reader_takes_is_refused_in_one_line(
+    tmp_path: Path, content: bytes, said: str
+) -> None:
     path = tmp_path / "small.toml"
     path.write_bytes(content)
     with pytest.raises(ScenarioError) as refused:
         scenario_file.load(path)
     assert "\n" not in str(refused.value)
     assert str(path) in str(refused.value)
+    assert said in str(refused.value)
 
 
 @pytest.mark.parametrize("text", ["nan,2", "1e400,2", "-inf,0", "1", "1,2,3", "x,y"])
