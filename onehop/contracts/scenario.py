@@ -24,8 +24,9 @@ from onehop.contracts.sections import (
     TeamSection,
 )
 
-NAME = re.compile(r"\w[\w.+ -]{0,99}")
-"""What a scenario may be called: its log's folder bears the name."""
+NAME = re.compile(r"\w[^/\\]*")
+NAME_BYTES = 200
+"""What a scenario may be called: its log's folder bears the name, and the time of its run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,11 +48,11 @@ class Scenario:
 
     def problems(self) -> Iterator[Problem]:
         """Everything that keeps this mission from being run: ranges, sections, then across them."""
-        if not NAME.fullmatch(self.name):
+        if not _is_name(self.name):
             yield Problem(
                 "name",
                 f"{self.name!r:.60} is no name",
-                "at most 100 letters, digits, spaces or . _ + -",
+                f"a letter or digit, then what can be printed but / and \\, at most {NAME_BYTES} bytes",
             )
         yield from out_of_range(self)
         for section in ("map", "team", "gains", "radio"):
@@ -80,3 +81,7 @@ class Scenario:
                     f"robot {strangers[0]} is not in the team",
                     f"ids of the team: {', '.join(map(str, robots))}",
                 )
+
+
+def _is_name(text: str) -> bool:
+    return text.isprintable() and NAME.fullmatch(text) is not None and len(text.encode()) <= NAME_BYTES

@@ -107,12 +107,19 @@ def test_a_number_that_was_declared_without_a_range_is_a_mistake_of_ours() -> No
         list(out_of_range(Section()))
 
 
-@pytest.mark.parametrize("name", ["a/../../x", "", "..", "x" * 101, "-x", "a\u202eb"])
+@pytest.mark.parametrize("name", ["a/../../x", "", "..", "x" * 201, "é" * 101, "-x", "a\u202eb"])
 def test_a_name_that_is_no_name_is_refused(tmp_path: Path, name: str) -> None:
     path = tmp_path / "small.toml"
     path.write_text(MISSION.replace("small", name))
-    with pytest.raises(ScenarioError, match=r"name: .* is no name; at most 100 letters"):
+    with pytest.raises(ScenarioError, match=r"name: .* is no name; a letter or digit, then"):
         scenario_file.load(path)
+
+
+@pytest.mark.parametrize("name", ["small", "a passage, and a block (2)", "Halle 7: Übung", "x" * 200])
+def test_a_name_may_be_words(tmp_path: Path, name: str) -> None:
+    path = tmp_path / "small.toml"
+    path.write_text(MISSION.replace("small", name))
+    assert scenario_file.load(path).scenario.name == name
 
 
 def test_a_byte_order_mark_is_read_over(tmp_path: Path) -> None:
