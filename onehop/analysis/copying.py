@@ -13,7 +13,6 @@ from onehop import __version__
 from onehop.wire.log_writer import OUTCOME
 from onehop.wire.records import (
     Record,
-    RecordError,
     attachment,
     channel,
     content_of,
@@ -55,15 +54,12 @@ class LogCopy:
         self.topics: dict[int, str] = {}
 
     def take_apart(self, stream: BinaryIO, records: Iterable[Record]) -> None:
-        """Copy metadata and attachments that are sound; the outcome waits for the end."""
+        """Copy metadata and attachments; the outcome waits for the end."""
         for record in records:
-            try:
-                if record.opcode == Opcode.METADATA:
-                    self._take_metadata(metadata(content_of(stream, record)))
-                else:
-                    self._take_attachment(attachment(content_of(stream, record)))
-            except RecordError:
-                continue
+            if record.opcode == Opcode.METADATA:
+                self._take_metadata(metadata(content_of(stream, record)))
+            else:
+                self._take_attachment(attachment(content_of(stream, record)))
         self.settle()
 
     def _take_metadata(self, about: Metadata) -> None:
@@ -81,23 +77,17 @@ class LogCopy:
         """End the chunk: nothing that follows can overtake it, and its head says which ticks it has."""
         self.writer.flush()  # type: ignore[no-untyped-call]
 
-    def take(self, record: Schema | Channel) -> None:
-        """Copy a schema or a channel, unless its id is taken already. Raises RecordError."""
-        if isinstance(record, Schema):
-            if record.id not in self._schemas:
-                self._schemas[record.id] = self.writer.register_schema(
-                    record.name, record.encoding, record.data
-                )
-            return
-        before = self.topics.setdefault(record.id, record.topic)
-        if before != record.topic:
-            raise RecordError(f"channel {record.id} has two topics")
-        if record.id not in self._channels:
-            if record.schema_id not in self._schemas:
-                raise RecordError(f"channel {record.id} has a schema that there is not")
-            self._channels[record.id] = self.writer.register_channel(
-                record.topic, record.message_encoding, self._schemas[record.schema_id], record.metadata
-            )
+    def take_schema(self, one: Schema) -> None:
+        """Copy a schema, unless its id is taken already."""
+        if one.id not in self._schemas:
+            self._schemas[one.id] = self.writer.register_schema(one.name, one.encoding, one.data)
+
+    def take_channel(self, one: Channel) -> None:
+        """Copy a channel of another id than those before; without its schema, if that is lost."""
+        self.topics[one.id] = one.topic
+        self._channels[one.id] = self.writer.register_channel(
+            one.topic, one.message_encoding, self._schemas.get(one.schema_id, 0), one.metadata
+        )
 
     def take_message(self, one: Message) -> None:
         """Copy a message of a channel that was taken."""

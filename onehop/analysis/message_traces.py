@@ -83,10 +83,10 @@ def join(verdicts: Table, requests: Table, period_ns: int) -> Iterator[MessageTr
 
 
 class _Outboxes:
-    """Payloads by source and number. Where ticks are missing in the log the count is wrong behind them:
+    """Payloads by source and number.
 
-    then a payload is found by the tick in which it was handed to the radio and its destination, if it is
-    the only one.
+    Behind ticks that are missing in the log the count is wrong. A payload is found there by the tick in
+    which it was handed to the radio and by its destination, if it is the only one.
     """
 
     def __init__(self, requests: Table) -> None:

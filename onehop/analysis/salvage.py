@@ -50,9 +50,9 @@ def salvage(torn: Path, out: Path) -> Salvage:
     with LogCopy(out, "salvaged") as copy, torn.open("rb") as stream:
         copy.take_apart(stream, found.apart)
         for schema in found.schemas:
-            copy.take(schema)
+            copy.take_schema(schema)
         for channel in found.channels.values():
-            copy.take(channel)
+            copy.take_channel(channel)
         rescue = _Rescue(copy, found)
         for piece in found.pieces:
             rescue.begin(piece.first_tick)

@@ -6,9 +6,11 @@ from random import Random
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from mcap.reader import make_reader
 
 from onehop.analysis import Log, open_log
 from onehop.analysis.salvage import salvage
+from onehop.analysis.view.layer import write_view
 from onehop.contracts.errors import LogError
 from onehop.wire.log_reader import LogFile, LoggedTick
 from onehop.wire.log_writer import LogWriter
@@ -175,6 +177,21 @@ def test_a_log_with_a_robot_that_died_in_the_middle_is_saved_whole_beside_damage
     _damaged(path, broken, 2, 60)
     salvage(broken, saved)
     assert died in {tick.tick for tick in LogFile(saved).ticks()}
+
+
+def test_a_viewer_layer_is_saved_with_its_log(log: Log, tmp_path: Path) -> None:
+    viewed, broken, saved = (tmp_path / f"{name}.mcap" for name in ("viewed", "broken", "saved"))
+    write_view(log, viewed)
+    _damaged(viewed, broken, 1, 60)
+    result = salvage(broken, saved)
+    assert result.flaws
+    with saved.open("rb") as stream:
+        reader = make_reader(stream)
+        summary = reader.get_summary()
+        seen = sum(1 for _ in reader.iter_messages(["/tf"]))
+    assert summary is not None
+    assert {"foxglove.FrameTransforms", "onehop.Link"} <= {one.name for one in summary.schemas.values()}
+    assert 0 < seen < len(ticks(viewed))
 
 
 def test_the_saved_log_carries_scenario_and_versions(log: Log, log_path: Path, tmp_path: Path) -> None:
