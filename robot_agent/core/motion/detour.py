@@ -10,7 +10,6 @@ Differs: the thesis only names border following; the trail makes it end behind c
 lies inside a wall for a long time.
 """
 
-import math
 from collections.abc import Sequence
 
 from onehop.contracts.arrays import Ranges
@@ -26,8 +25,7 @@ from robot_agent.core.motion.trail_pursuit import TrailPursuit
 
 HOLD = 0.1
 """A course around an obstacle is held for this time, then decided anew [s]: half the work, and nothing
-moves farther than 0.3 m meanwhile. One that is abeam on the other side than what is headed for is held
-until the robot faces it: it would turn back before it has left what is in the way."""
+moves farther than 0.3 m meanwhile."""
 
 ON_THE_SPOT = 2
 """A tick in which the robot only turns counts as this many: it is nearer to being stuck. One in which it
@@ -77,7 +75,6 @@ class Detour:
     ) -> None:
         """period: of a tick [s]. draws: random shares in [0, 1) for getting out of jams."""
         self._max_speed = body.max_speed
-        self._most_turned = body.max_turn_rate * period  # rad a tick
         self._steering = steering
         self._pursuit = TrailPursuit(steering.free, period)
         self._jam = FollowerJam(body, steering, period, draws)
@@ -160,12 +157,9 @@ class Detour:
             self._side = 1 if direction >= course.bearing else -1
         speed = stoppable(min(task.k_rho * course.left, self._max_speed), free)
         self._jam.moved((pose.x, pose.y), self._hold)
-        hold = self._hold
-        if abs(direction) > TURN_IN_PLACE and direction * course.bearing < 0.0:
-            hold = max(hold, math.ceil(abs(direction) / self._most_turned))  # or it turns to and fro
-        self._since_look = hold
-        if hold > 1:
-            self._held, self._held_for = (pose.heading + direction, speed), hold - 1
+        self._since_look = self._hold
+        if self._hold > 1:
+            self._held, self._held_for = (pose.heading + direction, speed), self._hold - 1
         return self._steering.drive(direction, speed)
 
     def _course(
