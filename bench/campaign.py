@@ -52,14 +52,23 @@ def faults(seed: int) -> list[str]:
 
 
 class Witness:
-    """Where and when robots touched something."""
+    """Where and when robots touched something, and what followers measured of their links."""
 
     def __init__(self) -> None:
         self.contacts: list[dict[str, float]] = []
+        self.measured = 0
+        self.sum_bps = 0.0
+
+    def throughput_bps(self) -> float | None:
+        """Mean over followers and ticks, lost messages as 0 [bit/s]."""
+        return round(self.sum_bps / self.measured) if self.measured else None
 
     def watch(self, world: World, actions: dict[int, Action]) -> None:
         """Called by the driver after every tick."""
-        del actions
+        for action in actions.values():
+            if action.status.throughput_bps >= 0.0:
+                self.measured += 1
+                self.sum_bps += action.status.throughput_bps
         for one in world.truth().contacts:
             place = {"robot": one.robot, "other": one.other, "x": round(one.x, 2), "y": round(one.y, 2)}
             self.contacts.append({"at_s": world.time_ns / 1e9, **place})
@@ -83,6 +92,7 @@ def mission(number: int, seed: int, with_faults: bool) -> dict[str, Any]:
         "sim_s": outcome.sim_s,
         "collisions": outcome.collisions,
         "contacts": witness.contacts,
+        "throughput_bps": witness.throughput_bps(),
         "cpu_s": round(time.process_time() - began, 1),
     }
 
@@ -94,6 +104,7 @@ def summary(lines: list[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]
         if not mine:
             continue
         times = sorted(line["sim_s"] for line in mine if line["outcome"] == "arrived")
+        measured = [line["throughput_bps"] for line in mine if line["throughput_bps"] is not None]
         yield (
             f"map{number}",
             {
@@ -104,7 +115,10 @@ def summary(lines: list[dict[str, Any]]) -> Iterator[tuple[str, dict[str, Any]]]
                 "not_whole": {
                     line["seed"]: list(line["arrived"]) for line in mine if len(line["arrived"]) < TEAM
                 },
+                "lost": sum(len(line["lost"]) for line in mine),
                 "median_s": times[len(times) // 2] if times else None,
+                "longest_s": times[-1] if times else None,
+                "mean_throughput_bps": round(sum(measured) / len(measured)) if measured else None,
             },
         )
 

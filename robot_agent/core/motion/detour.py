@@ -10,6 +10,7 @@ Differs: the thesis only names border following; the trail makes it end behind c
 lies inside a wall for a long time.
 """
 
+import math
 from collections.abc import Sequence
 
 from onehop.contracts.arrays import Ranges
@@ -25,11 +26,12 @@ from robot_agent.core.motion.trail_pursuit import TrailPursuit
 
 HOLD = 0.1
 """A course around an obstacle is held for this time, then decided anew [s]: half the work, and nothing
-moves farther than 0.3 m meanwhile."""
+moves farther than 0.3 m meanwhile. One that is turned to on the spot is held until the robot faces it:
+what it sees and heads for changes while it turns, and it would turn to and fro."""
 
-ON_THE_SPOT = 2
-"""A tick in which the robot only turns counts as this many: it is nearer to being stuck. One in which it
-decides on a course counts as all those for which the course is held."""
+FACED = 0.3
+"""A direction less than this aside is faced [rad]: the robot drives in it at nine tenths of its
+speed."""
 
 BLOCKED_AFTER, CLEAR_AFTER = 1.0, 0.4
 """Time after which an obstacle counts as in the way, and as passed [s]: no flutter of modes."""
@@ -75,6 +77,7 @@ class Detour:
     ) -> None:
         """period: of a tick [s]. draws: random shares in [0, 1) for getting out of jams."""
         self._max_speed = body.max_speed
+        self._most_turned = body.max_turn_rate * period  # rad a tick
         self._steering = steering
         self._pursuit = TrailPursuit(steering.free, period)
         self._jam = FollowerJam(body, steering, period, draws)
@@ -82,8 +85,7 @@ class Detour:
         self._blocked_after = in_ticks(BLOCKED_AFTER, period)
         self._clear_after = in_ticks(CLEAR_AFTER, period)
         self._watch_every = in_ticks(WATCH_EVERY, period)
-        self._age = 0
-        self._since_look = ON_THE_SPOT  # ticks, as they count
+        self._age = self._looked_at = self._since_look = 0  # ticks
         self._blocked_for = self._clear_for = 0
         self._side = 0
         self._held: tuple[float, float] | None = None
@@ -104,7 +106,7 @@ class Detour:
 
     def tracks(self) -> None:
         """The robot tracks its slot at this tick."""
-        self._since_look, self._held = ON_THE_SPOT, None
+        self._looked_at, self._held = self._age, None
         self._jam.clear()
 
     def held(self, pose: Pose) -> Twist | None:
@@ -124,6 +126,7 @@ class Detour:
         """
         free_directions = self._steering.free
         free_directions.look(scan)
+        self._since_look, self._looked_at = self._age - self._looked_at, self._age
         if abs(bearing) > TURN_IN_PLACE:
             return None if self.border else LOOKAHEAD
         free = free_directions.free_distance(bearing)
@@ -141,32 +144,36 @@ class Detour:
 
     def step(self, pose: Pose, distance: float, bearing: float, task: SlotTask) -> Twist:
         """Around the obstacle, or along its border. distance, bearing: of the slot [m, rad]."""
-        ticks, self._since_look = self._since_look, ON_THE_SPOT
-        course = self._course(pose, distance, bearing, task, ticks)
+        course = self._course(pose, distance, bearing, task)
         if course is None:
+            self._jam.clear()
             return self._steering.turn(bearing)
         if self._jam.escaping:
             return self._jam.escape()
+        self._jam.moved((pose.x, pose.y), self._age)
         if abs(course.bearing) > TURN_IN_PLACE:
-            return self._steering.turn(course.bearing)
+            return self._hold_course(pose, course.bearing, 0.0)
         choice = self._steering.free.choose(course.bearing, course.distance, course.side)
         if choice is None:
-            return self._jam.shut_in(ON_THE_SPOT)
+            return self._jam.turned()
         direction, free = choice
         if self.border and self._side == 0:
             self._side = 1 if direction >= course.bearing else -1
         speed = stoppable(min(task.k_rho * course.left, self._max_speed), free)
-        self._jam.moved((pose.x, pose.y), self._hold)
-        self._since_look = self._hold
-        if self._hold > 1:
-            self._held, self._held_for = (pose.heading + direction, speed), self._hold - 1
+        return self._hold_course(pose, direction, speed)
+
+    def _hold_course(self, pose: Pose, direction: float, speed: float) -> Twist:
+        """Take a direction [rad] for a while: at this speed [m/s], or until the robot faces it."""
+        hold = self._hold
+        if abs(direction) > TURN_IN_PLACE:
+            hold = max(hold, math.ceil((abs(direction) - FACED) / self._most_turned))
+        if hold > 1:
+            self._held, self._held_for = (pose.heading + direction, speed), hold - 1
         return self._steering.drive(direction, speed)
 
-    def _course(
-        self, pose: Pose, distance: float, bearing: float, task: SlotTask, ticks: int
-    ) -> Course | None:
+    def _course(self, pose: Pose, distance: float, bearing: float, task: SlotTask) -> Course | None:
         """The slot, or a point of the leader's trail; None to wait for the leader to move on."""
-        point = self._pursuit.point(pose, task.trail, ticks) if self.border else None
+        point = self._pursuit.point(pose, task.trail, self._since_look) if self.border else None
         if point is None:
             return Course(bearing, distance, distance, self._side)
         if point.newest and point.distance <= task.standoff:

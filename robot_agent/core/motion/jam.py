@@ -12,12 +12,13 @@ from onehop.contracts import elementary
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.geometry import Pose, Twist, wrap_angle
 from onehop.contracts.sections import RobotSection
-from robot_agent.core.motion.steering import GAP, Steering, stoppable
+from robot_agent.core.motion.steering import GAP, TURN_IN_PLACE, Steering, stoppable
 from robot_agent.core.motion.timing import in_ticks
 from robot_agent.core.motion.trail import Point
 
 STUCK_AFTER = 2.0
-"""Time without getting anywhere after which a robot is stuck [s]: others clear most jams before."""
+"""Time without getting anywhere after which a robot is stuck [s]: others clear most jams before. What
+the longest turn on the spot takes comes on top: it is no jam."""
 
 LEAST_SPEED = 0.04
 """A robot that is slower gets nowhere [m/s]: the safety filter holds it, or it only turns."""
@@ -63,11 +64,12 @@ class FollowerJam:
         self._turn_rate = TURN_SHARE * body.max_turn_rate
         self._draws = draws
         self._drawn = 0
-        self._stuck_after = in_ticks(STUCK_AFTER, period)
+        longest_turn = (math.pi - TURN_IN_PLACE) / body.max_turn_rate
+        self._stuck_after = in_ticks(STUCK_AFTER + longest_turn, period)
         self._stuck_for = 0
         self._escape = 0
         self._side = 1
-        self._last_place: Point = (0.0, 0.0)
+        self._last: tuple[Point, int] | None = None
 
     @property
     def escaping(self) -> bool:
@@ -75,37 +77,37 @@ class FollowerJam:
         return self._escape > 0
 
     def clear(self) -> None:
-        """Nothing is in the robot's way any more."""
-        self._stuck_for = 0
+        """The robot is not to get anywhere, or nothing is in its way any more."""
+        self._stuck_for, self._last = 0, None
 
     def reset(self) -> None:
         """Forget the jam and the escape from it."""
-        self._stuck_for = self._escape = 0
+        self.clear()
+        self._escape = 0
 
-    def moved(self, here: Point, ticks: int) -> None:
-        """Take where the robot is, that many ticks after the last time: does it get anywhere?"""
-        if math.dist(here, self._last_place) < LEAST_SPEED * (ticks * self._period):
-            self._getting_nowhere(ticks)
-        else:
-            self._stuck_for = max(0, self._stuck_for - RECOVERY * ticks)
-        self._last_place = here
+    def moved(self, here: Point, tick: int) -> None:
+        """Take where the robot is at this tick: has it got anywhere since the last time?"""
+        if self._last is not None:
+            there, before = self._last
+            ticks = tick - before
+            if math.dist(here, there) < LEAST_SPEED * (ticks * self._period):
+                self._getting_nowhere(ticks)
+            else:
+                self._stuck_for = max(0, self._stuck_for - RECOVERY * ticks)
+        self._last = here, tick
 
-    def shut_in(self, ticks: int) -> Twist:
+    def turned(self) -> Twist:
         """No direction is free: turn until one is."""
-        self._getting_nowhere(ticks)
-        return self._turned()
+        return Twist(0.0, self._side * self._turn_rate)
 
     def escape(self) -> Twist:
         """Towards the side that chance chose, wherever there is room."""
-        self._escape -= 1
+        self._escape, self._last = self._escape - 1, None
         choice = self._steering.free.choose(self._side * ESCAPE_BEARING, GAP)
         if choice is None:
-            return self._turned()
+            return self.turned()
         direction, free = choice
         return self._steering.drive(direction, stoppable(ESCAPE_SPEED, free))
-
-    def _turned(self) -> Twist:
-        return Twist(0.0, self._side * self._turn_rate)
 
     def _getting_nowhere(self, ticks: int) -> None:
         self._stuck_for += ticks

@@ -74,22 +74,34 @@ def test_a_course_around_an_obstacle_is_held_for_a_tenth_of_a_second(period, tic
 
 
 @pytest.mark.parametrize("period", [0.02, 0.05, 0.1])
-def test_a_robot_that_turns_to_and_fro_beside_a_wall_escapes_with_any_period(period):
-    """It heads for a point that it saw, now behind a wall that it is too near to: away from the wall,
-    and as that is too far from the point, back to it."""
+def test_a_robot_beside_a_wall_does_not_turn_to_and_fro(period):
+    """It heads for a point that it saw, now behind a wall that it is too near to. Away from the wall is
+    too far from the point, which it would turn back to: it faces away first, with any period."""
     driver, pose = follower(period, draws=(0.1,)), Pose(0.0, 0.0, 0.9)
     task = SlotTask(Pose(8.0, -2.0, 0.0), ((3.4, -1.1),), 1.0, True, 1.0)
     for _ in range(round(0.5 / period)):
         driver.to_slot(Pose(0.0, 0.0, -0.3), OPEN, 1.0, task)
     ticks = left = 0
-    while left * period < 0.35 and ticks * period < 20.0:
+    while left * period < 0.35 and ticks * period < 3.0:
         angles = BEAMS.angles + pose.heading
         wall = np.where((angles > -1.6) & (angles < 0.6), 0.25, np.inf).astype(np.float32)
         twist = driver.to_slot(pose, wall, 0.25, task)
         left = left + 1 if twist.w > 0.0 else 0
         pose = moved(pose, Twist(0.0, twist.w), period)
         ticks += 1
-    assert ticks * period < 10.0
+    assert ticks * period < 1.0
+
+
+@pytest.mark.parametrize("period", [0.02, 0.05, 0.1])
+def test_a_robot_that_only_turns_and_never_faces_what_it_turns_to_escapes(period):
+    """What it heads for is another thing at every look, or it is held fast: turning is no way out."""
+    driver, wall = follower(period, draws=(0.7,)), block(-30, 30, 1.0)
+    while not driver.detour.border:
+        driver.to_slot(HERE, wall, 1.0, task(Pose(5.0, 0.0, 0.0)))
+    beside = task(Pose(0.3, 5.0, 0.0))
+    rates = [driver.to_slot(HERE, wall, 1.0, beside).w for _ in range(round(5.0 / period))]
+    escape = next(k for k, rate in enumerate(rates) if rate < 0.0) * period
+    assert 2.0 < escape < 3.5, "not during a turn that it is right to make"
 
 
 @pytest.mark.parametrize("period", [0.02, 0.05])

@@ -1,5 +1,7 @@
 """Getting out of jams: when a robot is stuck, and what it does then, whatever its control period."""
 
+import math
+
 import pytest
 
 from onehop.contracts.geometry import Pose
@@ -10,7 +12,7 @@ from robot_agent.core.motion.jam import (
     FollowerJam,
     LeaderJam,
 )
-from robot_agent.core.motion.steering import Steering
+from robot_agent.core.motion.steering import TURN_IN_PLACE, Steering
 from tests.agent.motion.scans import BEAMS, BODY, GAINS, HERE, block, walls
 
 PERIODS = pytest.mark.parametrize("period", [0.02, 0.05, 0.1])
@@ -22,12 +24,16 @@ def follower_jam(period, *draws):
 
 
 @PERIODS
-def test_a_follower_that_stands_for_two_seconds_escapes_for_as_long_as_chance_says(period):
-    jam, waited = follower_jam(period, 0.25), 0
+@pytest.mark.parametrize("every", [1, 3])
+def test_a_follower_that_gets_nowhere_escapes_for_as_long_as_chance_says(period, every):
+    """After two seconds and the longest turn on the spot, however often it is asked."""
+    jam, tick = follower_jam(period, 0.25), 0
+    jam.moved((3.0, 4.0), tick)
     while not jam.escaping:
-        jam.moved((3.0, 4.0), 1)
-        waited += 1
-    assert waited * period == pytest.approx(2.0, abs=1.1 * period)
+        tick += every
+        jam.moved((3.0, 4.0), tick)
+    longest = 2.0 + (math.pi - TURN_IN_PLACE) / BODY.max_turn_rate
+    assert tick * period == pytest.approx(longest, abs=(every + 0.1) * period)
     escaped = 0
     while jam.escaping:
         jam.escape()
@@ -39,18 +45,29 @@ def test_a_follower_that_stands_for_two_seconds_escapes_for_as_long_as_chance_sa
 @pytest.mark.parametrize(("speed", "stuck"), [(0.03, True), (0.05, False)])
 def test_a_follower_slower_than_four_centimetres_a_second_is_stuck(period, speed, stuck):
     jam = follower_jam(period, 0.5)
-    for tick in range(1, round(4.0 / period)):
-        jam.moved((speed * period * tick, 0.0), 1)
+    for tick in range(round(4.0 / period)):
+        jam.moved((speed * period * tick, 0.0), tick)
     assert jam.escaping is stuck
+
+
+@PERIODS
+@pytest.mark.parametrize("forget", [FollowerJam.clear, FollowerJam.reset])
+def test_a_follower_that_did_something_else_meanwhile_is_not_stuck_where_it_was_before(period, forget):
+    jam = follower_jam(period, 0.5)
+    jam.moved((3.0, 4.0), 0)
+    forget(jam)
+    jam.moved((3.0, 4.0), round(60.0 / period))
+    assert not jam.escaping
 
 
 def test_a_follower_turns_to_the_side_that_chance_chose_where_nothing_is_free():
     for draw, side in ((0.2, 1.0), (0.8, -1.0)):
-        jam = follower_jam(0.05, draw)
+        jam, tick = follower_jam(0.05, draw), 0
         while not jam.escaping:
-            twist = jam.shut_in(2)
+            jam.moved((0.0, 0.0), tick)
+            tick += 1
         jam.reset()
-        twist = jam.shut_in(2)
+        twist = jam.turned()
         assert twist.v == 0.0
         assert twist.w * side == pytest.approx(0.6 * BODY.max_turn_rate)
 
