@@ -8,7 +8,7 @@ the trail counts only for a robot that never saw any of it.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from onehop.contracts import elementary
 from onehop.contracts.geometry import Pose
@@ -81,23 +81,28 @@ class TrailPursuit:
     def point(self, pose: Pose, trail: Sequence[Point], ticks: int) -> TrailPoint | None:
         """Where to head for; None without a trail. ticks: that count since this was asked last."""
         in_sight, local = self.watch(pose, trail), frame_of(pose)
-        way = self._way
+        here, way = (pose.x, pose.y), self._way
         if not way:
             return None
         self._patience = self._around_corner if in_sight else self._patience - ticks
         if len(self._breadcrumbs) == 1 and self._patience < 0:
             self._patience = self._around_corner
         if self._patience < 0 and self._breadcrumbs:
-            seen = (crumb for crumb in self._breadcrumbs if self._in_sight(local(crumb)))
-            back = local(next(seen, self._breadcrumbs[-1]))
-            return _trail_point(back, newest=False, known=True)
+            return _trail_point(local(self._back(here, local)), newest=False, known=True)
         if not in_sight and not self._breadcrumbs:
-            away = [math.dist((pose.x, pose.y), point) for point in way]
+            away = [math.dist(here, point) for point in way]
             del way[: away.index(min(away))]
-        if not in_sight and len(way) > 1 and math.dist(way[0], (pose.x, pose.y)) < REACHED:
+        if not in_sight and len(way) > 1 and math.dist(way[0], here) < REACHED:
             del way[0]
         known = in_sight or bool(self._breadcrumbs)
         return _trail_point(local(way[0]), newest=len(way) == 1, known=known)
+
+    def _back(self, here: Point, local: Callable[[Point], Point]) -> Point:
+        """The farthest breadcrumb back that is in sight, or the next; it is not at the first one."""
+        crumbs = self._breadcrumbs
+        seen = (crumb for crumb in crumbs if self._in_sight(local(crumb)))
+        ahead = (crumb for crumb in reversed(crumbs) if math.dist(here, crumb) >= REACHED)
+        return next(seen, None) or next(ahead)
 
     def _learn(self, trail: Sequence[Point]) -> None:
         """Add what is new in the leader's trail; a trail that has nothing in common is another one.

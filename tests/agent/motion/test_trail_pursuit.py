@@ -29,9 +29,13 @@ def test_out_of_sight_the_robot_goes_back_the_way_it_came():
     free.look(walls(0.6))
     for y in (1.5, 3.0, 4.5, 6.0, 7.5):
         assert not pursuit.watch(Pose(0.0, y, math.pi / 2), trail)
-    point = pursuit.point(Pose(0.0, 7.6, math.pi / 2), trail, 2)
+    point = pursuit.point(Pose(0.0, 8.3, math.pi / 2), trail, 2)
     assert abs(point.bearing) > 3.0, "its own last point lies behind it"
-    assert point.distance < 2.0
+    assert point.distance == pytest.approx(0.8)
+    point = pursuit.point(Pose(0.0, 7.6, math.pi / 2), trail, 2)
+    assert point.distance == pytest.approx(1.6), "not the one that it stands on"
+    assert not pursuit.watch(HERE, trail)
+    assert pursuit.point(HERE, trail, 2).newest, "back where the trail was in sight"
 
 
 def test_a_point_that_slips_out_of_sight_at_a_corner_is_still_headed_for():
