@@ -35,23 +35,19 @@ _SHARE_SHIFT = 1.5 * 2.0**12
 _SHARE_SURE = 2.0**-41 - 2.0**-50
 """The same for a mantissa in [1/2, 1) and 40 bits."""
 
-_SINE = (
-    1.58969099521155010221e-10,
-    -2.50507602534068634195e-08,
-    2.75573137070700676789e-06,
-    -1.98412698298579493134e-04,
-    8.33333333332248946124e-03,
-    -1.66666666666666324348e-01,
-)
-_COSINE = (
-    -1.13596475577881948265e-11,
-    2.08757232129817482790e-09,
-    -2.75573143513906633035e-07,
-    2.48015872894767294178e-05,
-    -1.38888888888741095749e-03,
-    4.16666666666666019037e-02,
-)
-"""Coefficients of msun's polynomials on [-pi/4, pi/4], highest power first."""
+
+def _series(first: int) -> tuple[float, ...]:
+    """Coefficients of cos(pi x) (first 0) or sin(pi x) / x (first 1) in powers of x^2."""
+    term = math.pi if first else 1.0
+    terms = []
+    for power in range(first, 18, 2):
+        terms.append(term)
+        term *= -math.pi * math.pi / ((power + 1) * (power + 2))
+    return tuple(terms)
+
+
+_HALF_COSINE = _series(0)
+_HALF_SINE = _series(1)
 
 _DIGITS = 60
 _PI = Decimal("3.14159265358979323846264338327950288419716939937510582097494459230781640628620899862803")
@@ -126,19 +122,16 @@ def directions(y: FloatArray, x: FloatArray) -> FloatArray:
 
 
 def circle(turns: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Cosines and sines of angles in whole turns, of any shape, each within 1e-15.
+    """Cosines and sines of angles in whole turns, of any shape, each within 1e-11.
 
-    For the many angles of a sum of waves: the polynomials of FreeBSD's msun (k_sin.c, k_cos.c, Sun
-    Microsystems 1993), made of +, - and * of whole arrays, need no second look.
+    For the many angles of a sum of waves: Taylor's series of half the angle, products and sums of whole
+    arrays, which need no second look.
     """
-    quarters = np.rint(4.0 * turns)
-    x = (turns - 0.25 * quarters) * (2.0 * math.pi)
+    x = turns - np.rint(turns)
     z = x * x
-    sines = x + x * z * _polynomial(z, _SINE)
-    cosines = 1.0 - (0.5 * z - z * z * _polynomial(z, _COSINE))
-    turned = np.mod(quarters, 2.0) == 1.0
-    sign = np.where(np.mod(quarters, 4.0) >= 2.0, -1.0, 1.0)
-    return sign * np.where(turned, -sines, cosines), sign * np.where(turned, cosines, sines)
+    sines = x * _polynomial(z, _HALF_SINE)
+    twice = 2.0 * sines
+    return 1.0 - twice * sines, twice * _polynomial(z, _HALF_COSINE)
 
 
 def lengths(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -147,11 +140,12 @@ def lengths(x: FloatArray, y: FloatArray) -> FloatArray:
 
 
 def _polynomial(z: FloatArray, coefficients: tuple[float, ...]) -> FloatArray:
-    """Horner's scheme, highest power first."""
-    total = np.full_like(z, coefficients[0])
-    for coefficient in coefficients[1:]:
-        total *= z
+    """Horner's scheme. coefficients: of 1, z, z^2, ..."""
+    total = coefficients[-1] * z
+    for coefficient in coefficients[-2:0:-1]:
         total += coefficient
+        total *= z
+    total += coefficients[0]
     return total
 
 

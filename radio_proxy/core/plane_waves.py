@@ -44,20 +44,22 @@ class PlaneWaves:
 
     def real(self, station: int) -> FloatArray:
         """Real part of h between a station and each, (stations,); its variance is near n."""
-        cosines, sines = self._other_end(self._cosines[station]), self._other_end(self._sines[station])
-        return self._sum(self._cosines * cosines - self._sines * sines)
+        return self._both_ways(self._cosines, self._cosines, station) - self._both_ways(
+            self._sines, self._sines, station
+        )
 
     def imaginary(self, station: int) -> FloatArray:
         """Imaginary part of h between a station and each, (stations,)."""
-        cosines, sines = self._other_end(self._cosines[station]), self._other_end(self._sines[station])
-        return self._sum(self._cosines * sines + self._sines * cosines)
+        return self._both_ways(self._cosines, self._sines, station) + self._both_ways(
+            self._sines, self._cosines, station
+        )
 
-    def _other_end(self, phasors: FloatArray) -> FloatArray:
-        return np.roll(phasors, self._waves)
-
-    def _sum(self, products: FloatArray) -> FloatArray:
-        """Over the waves; the two halves first, so that both ends come to the same bits."""
-        return np.asarray((products[:, : self._waves] + products[:, self._waves :]).sum(axis=1))
+    def _both_ways(self, first: FloatArray, second: FloatArray, station: int) -> FloatArray:
+        """Sum of the products of the first wave at one end and the second at the other, and back."""
+        n = self._waves
+        there = first[:, :n] * second[station, n:]
+        back = second[:, n:] * first[station, :n]
+        return np.asarray((there + back).sum(axis=1))
 
 
 def strata(stream: np.random.Generator, count: int) -> FloatArray:

@@ -9,7 +9,7 @@ side hear a third one alike (P. Agrawal and N. Patwari, "Correlated link shadow 
 wireless networks", IEEE Transactions on Wireless Communications 8(8), 2009). It is a sum of sinusoids
 (X. Cai and G. B. Giannakis, "A two-dimensional channel simulation model for shadowing processes", IEEE
 Transactions on Vehicular Technology 52(6), 2003). Differs from them: frequencies are drawn out of equal
-parts of the spectrum instead of anywhere, so 128 waves do.
+parts of the spectrum instead of anywhere, so 64 waves do.
 """
 
 import math
@@ -22,8 +22,8 @@ from onehop.contracts.randomness import generator
 from radio_proxy.core.link_budget import CLIP, LinkBudget
 from radio_proxy.core.plane_waves import PlaneWaves, directions, strata
 
-WAVES = 128
-"""Autocorrelation of one seed in one direction: within 0.03 (r.m.s.) of the exponential."""
+WAVES = 64
+"""Autocorrelation of one seed in one direction: within 0.05 (r.m.s.) of the exponential."""
 
 ONE_PLACE = 8.0
 """Ends further apart than so many decorrelation distances are of no account to each other (1e-7)."""
