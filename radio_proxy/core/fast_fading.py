@@ -93,9 +93,14 @@ def fast_fading(section: RadioSection, seed: int, stations: int) -> FastFading |
     """The fast fading of a mission, if it has any."""
     if section.fast_fading == "none":
         return None
-    rician = section.fast_fading == "rician"
-    k = elementary.power_of_ten(section.rician_k_db / 10.0) if rician else 0.0
-    wavelength = SPEED_OF_LIGHT / section.frequency_hz
+    k, wavelength = rician_k(section), SPEED_OF_LIGHT / section.frequency_hz
     return FastFading(
         generator(seed, "fast fading"), wavelength, k, section.ambient_doppler_hz, stations
     )
+
+
+def rician_k(section: RadioSection) -> float:
+    """Power of the line of sight over that of all other paths; 0 under Rayleigh fading."""
+    if section.fast_fading == "rician":
+        return elementary.power_of_ten(section.rician_k_db / 10.0)
+    return 0.0
