@@ -10,7 +10,7 @@ The waves stand in space, so the Doppler shift is whatever the motion makes of t
 have a channel that stands, unless people walk about (`ambient_doppler_hz`, J0(2 pi f t) as well). Within
 a tick robots move straight from where they were to where they are.
 
-Differs: gains hold for half a millisecond, in which 10 m/s are 0.04 wavelengths.
+Differs: gains hold for a millisecond, in which 5 m/s are 0.04 wavelengths.
 """
 
 import math
@@ -24,7 +24,7 @@ from radio_proxy.core.airtime import SPEED_OF_LIGHT
 from radio_proxy.core.plane_waves import PlaneWaves, directions, strata
 
 WAVES = 32
-GRAIN = 500_000
+GRAIN = 1_000_000
 """Time for which gains hold [ns]."""
 
 DEEPEST = 1e-6
@@ -38,25 +38,19 @@ class FastFading:
     the robots [Hz].
     """
 
-    def __init__(
-        self,
-        stream: np.random.Generator,
-        wavelength: float,
-        k: float,
-        ambient: float,
-        stations: int,
-    ) -> None:
+    def __init__(self, stream: np.random.Generator, wavelength: float, k: float, ambient: float) -> None:
         first, second = directions(stream, WAVES), directions(stream, WAVES)
         offset = stream.random(WAVES)
-        self._waves = PlaneWaves(first / wavelength, second / wavelength, offset, stations)
+        self._waves = PlaneWaves(first / wavelength, second / wavelength, offset)
         self._shifts = ambient * elementary.circle(strata(stream, WAVES))[0] if ambient else None
         self._wavelength = wavelength
         self._sight = math.sqrt(k / (k + 1.0))
         self._scatter = math.sqrt(0.5 / (WAVES * (k + 1.0)))
-        self._before = self._after = np.zeros((stations, 2))
+        self._before = self._after = np.zeros((0, 2))
         self._start = self._end = 0
         self._grain = -1
         self._places = self._after
+        self._rows: dict[int, list[float]] = {}
 
     def move(
         self, before: list[tuple[float, float]], after: list[tuple[float, float]], start: int, end: int
@@ -70,7 +64,14 @@ class FastFading:
         """What each station hears `station` stronger by at a time [dB]."""
         if now // GRAIN != self._grain:
             self._grain = now // GRAIN
+            self._rows = {}
             self._place(GRAIN * self._grain)
+        row = self._rows.get(station)
+        if row is None:
+            row = self._rows[station] = self._compute_row(station)
+        return row
+
+    def _compute_row(self, station: int) -> list[float]:
         real, imaginary = (
             self._scatter * self._waves.real(station),
             self._scatter * self._waves.imaginary(station),
@@ -89,14 +90,12 @@ class FastFading:
         self._waves.place(self._places, None if self._shifts is None else self._shifts * (time / 1e9))
 
 
-def fast_fading(section: RadioSection, seed: int, stations: int) -> FastFading | None:
+def fast_fading(section: RadioSection, seed: int) -> FastFading | None:
     """The fast fading of a mission, if it has any."""
     if section.fast_fading == "none":
         return None
     k, wavelength = rician_k(section), SPEED_OF_LIGHT / section.frequency_hz
-    return FastFading(
-        generator(seed, "fast fading"), wavelength, k, section.ambient_doppler_hz, stations
-    )
+    return FastFading(generator(seed, "fast fading"), wavelength, k, section.ambient_doppler_hz)
 
 
 def rician_k(section: RadioSection) -> float:

@@ -22,44 +22,37 @@ class PlaneWaves:
     first, second: (2, n) wave vectors at either end [turns/m]; offset: (n,) phases [turns].
     """
 
-    def __init__(self, first: FloatArray, second: FloatArray, offset: FloatArray, stations: int) -> None:
-        self._vectors = np.concatenate((first, second), axis=1)
+    def __init__(self, first: FloatArray, second: FloatArray, offset: FloatArray) -> None:
+        self._vectors = np.stack((first, second), axis=1)
         self._offset = offset
-        self._waves = len(offset)
-        self._places = np.full((stations, 2), np.nan)
-        self._cosines = np.zeros((stations, 2 * self._waves))
-        self._sines = np.zeros((stations, 2 * self._waves))
+        self._places = np.zeros((0, 2))
+        self._phasors = np.zeros((0, 4, len(offset)))
 
     def place(self, places: FloatArray, drift: FloatArray | None = None) -> None:
         """Where the stations are, (stations, 2) [m]. drift: (n,), of the waves in time [turns]."""
-        moved = (places != self._places).any(axis=1)
-        offset = self._offset
-        if drift is not None:
-            moved[:] = True
-            offset = offset + drift
-        self._places[moved] = places[moved]
-        turns = places[moved, :1] * self._vectors[0] + places[moved, 1:] * self._vectors[1]
-        turns[:, : self._waves] += offset
-        self._cosines[moved], self._sines[moved] = elementary.circle(turns)
+        if drift is None and np.array_equal(places, self._places):
+            return
+        self._places = places
+        x, y = places[:, 0, None, None], places[:, 1, None, None]
+        turns = x * self._vectors[0] + y * self._vectors[1]
+        turns[:, 0] += self._offset if drift is None else self._offset + drift
+        self._phasors = np.concatenate(elementary.circle(turns), axis=1)
 
     def real(self, station: int) -> FloatArray:
-        """Real part of h between a station and each, (stations,); its variance is near n."""
-        return self._both_ways(self._cosines, self._cosines, station) - self._both_ways(
-            self._sines, self._sines, station
-        )
+        """Real part of h between a station and each, (stations,); its variance is near n.
+
+        Sums are taken in an order that both ends share, here and in the imaginary part.
+        """
+        u, v, u_sine, v_sine = self._phasors[station]
+        products = self._phasors * np.array((v, u, -v_sine, -u_sine))
+        waves = (products[:, 0] + products[:, 1]) + (products[:, 2] + products[:, 3])
+        return np.asarray(waves.sum(axis=1))
 
     def imaginary(self, station: int) -> FloatArray:
         """Imaginary part of h between a station and each, (stations,)."""
-        return self._both_ways(self._cosines, self._sines, station) + self._both_ways(
-            self._sines, self._cosines, station
-        )
-
-    def _both_ways(self, first: FloatArray, second: FloatArray, station: int) -> FloatArray:
-        """Sum of the products of the first wave at one end and the second at the other, and back."""
-        n = self._waves
-        there = first[:, :n] * second[station, n:]
-        back = second[:, n:] * first[station, :n]
-        return np.asarray((there + back).sum(axis=1))
+        products = self._phasors * self._phasors[station, ::-1]
+        waves = (products[:, 0] + products[:, 3]) + (products[:, 1] + products[:, 2])
+        return np.asarray(waves.sum(axis=1))
 
 
 def strata(stream: np.random.Generator, count: int) -> FloatArray:

@@ -44,8 +44,8 @@ class Radio:
             budget,
             robots,
             briefing.walls,
-            shadowing(budget, seed, len(robots)),
-            fast_fading(section, seed, len(robots)),
+            shadowing(budget, seed),
+            fast_fading(section, seed),
         )
         self._deliveries = Deliveries()
         self._link = LinkLayer(robots, section, self._propagation, self._draws, self._deliveries)

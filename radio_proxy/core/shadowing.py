@@ -35,12 +35,10 @@ class Shadowing:
     decorrelation: distance that one end moves until the correlation is 1/e [m].
     """
 
-    def __init__(
-        self, stream: np.random.Generator, sigma_db: float, decorrelation: float, stations: int
-    ) -> None:
+    def __init__(self, stream: np.random.Generator, sigma_db: float, decorrelation: float) -> None:
         first = _wave_vectors(stream, decorrelation)
         second = _wave_vectors(stream, decorrelation)
-        self._waves = PlaneWaves(first, second, stream.random(WAVES), stations)
+        self._waves = PlaneWaves(first, second, stream.random(WAVES))
         self._sigma_db = sigma_db
         self._decorrelation = decorrelation
         self._places: list[tuple[float, float]] = []
@@ -52,22 +50,22 @@ class Shadowing:
 
     def row_db(self, station: int) -> list[float]:
         """What each station hears `station` stronger by, within +-CLIP standard deviations [dB]."""
-        values = self._waves.real(station) / math.sqrt(WAVES)
-        here = self._places[station]
-        for other, there in enumerate(self._places):
+        scale, here, row = 1.0 / math.sqrt(WAVES), self._places[station], []
+        for there, total in zip(self._places, self._waves.real(station).tolist(), strict=True):
+            value = scale * total
             apart = math.dist(here, there) / self._decorrelation
             if apart < ONE_PLACE:  # the two halves of the sum agree, the more the nearer
-                values[other] /= math.sqrt(1.0 + elementary.exp(-2.0 * apart))
-        row: list[float] = (self._sigma_db * np.clip(values, -CLIP, CLIP)).tolist()
+                value /= math.sqrt(1.0 + elementary.exp(-2.0 * apart))
+            row.append(self._sigma_db * min(max(value, -CLIP), CLIP))
         return row
 
 
-def shadowing(budget: LinkBudget, seed: int, stations: int) -> Shadowing | None:
+def shadowing(budget: LinkBudget, seed: int) -> Shadowing | None:
     """The shadowing of a mission, if its places have any."""
     if budget.spatial_shadowing_db == 0.0:
         return None
     stream = generator(seed, "shadowing")
-    return Shadowing(stream, budget.spatial_shadowing_db, budget.decorrelation_distance, stations)
+    return Shadowing(stream, budget.spatial_shadowing_db, budget.decorrelation_distance)
 
 
 def _wave_vectors(stream: np.random.Generator, decorrelation: float) -> FloatArray:

@@ -18,8 +18,8 @@ TICK = SECOND // 20
 Walk = np.ndarray
 
 
-def paths(seed: int = 1, k: float = 0.0, ambient: float = 0.0, stations: int = 2) -> FastFading:
-    return FastFading(generator(seed, "fast fading"), WAVELENGTH, k, ambient, stations)
+def paths(seed: int = 1, k: float = 0.0, ambient: float = 0.0) -> FastFading:
+    return FastFading(generator(seed, "fast fading"), WAVELENGTH, k, ambient)
 
 
 def standing(air: FastFading, a: tuple[float, float], b: tuple[float, float], now: int = 0) -> float:
@@ -28,7 +28,7 @@ def standing(air: FastFading, a: tuple[float, float], b: tuple[float, float], no
     return air.row_db(0, now)[1]
 
 
-def walk(air: FastFading, speed_a: float, speed_b: float, samples: int, step: int = 4 * GRAIN) -> Walk:
+def walk(air: FastFading, speed_a: float, speed_b: float, samples: int, step: int = 2 * GRAIN) -> Walk:
     """Power gains along a straight walk of both ends at an angle to each other, every `step` ns."""
     seconds = samples * step / SECOND
     a, b = (0.0, 0.0), (40.0, 3.0)
@@ -75,7 +75,7 @@ def test_rician_power_has_its_line_of_sight(k: float) -> None:
 def test_power_of_one_moving_end_is_correlated_as_j0_squared(share: float) -> None:
     """Clarke 1968: J0(2 pi f_D t) of the field, so its square of the power; share of a wavelength."""
     lag = 4
-    speed = share * WAVELENGTH / (lag * 4 * GRAIN / SECOND)
+    speed = share * WAVELENGTH / (lag * 2 * GRAIN / SECOND)
     found = [power_correlation(walk(paths(seed), speed, 0.0, 2500), lag) for seed in range(6)]
     assert np.mean(found) == pytest.approx(j0(2 * math.pi * share) ** 2, abs=0.06)
 
@@ -84,7 +84,7 @@ def test_power_of_one_moving_end_is_correlated_as_j0_squared(share: float) -> No
 def test_power_of_two_moving_ends_is_correlated_as_the_product() -> None:
     """Akki and Haber 1986: J0(2 pi f_1 t) J0(2 pi f_2 t)."""
     lag, share_a, share_b = 4, 0.15, 0.1
-    per_second = WAVELENGTH / (lag * 4 * GRAIN / SECOND)
+    per_second = WAVELENGTH / (lag * 2 * GRAIN / SECOND)
     found = [
         power_correlation(walk(paths(seed), share_a * per_second, share_b * per_second, 2500), lag)
         for seed in range(6)
@@ -98,7 +98,7 @@ def test_power_of_two_moving_ends_is_correlated_as_the_product() -> None:
 def test_levels_are_crossed_as_often_as_rice_says(rho: float) -> None:
     """sqrt(2 pi) f_D rho exp(-rho^2) a second, for a level rho times the root mean square."""
     speed, samples = 1.0, 8000
-    doppler_hz, seconds = speed / WAVELENGTH, samples * 4 * GRAIN / SECOND
+    doppler_hz, seconds = speed / WAVELENGTH, samples * 2 * GRAIN / SECOND
     crossings = []
     for seed in range(4):
         above = np.sqrt(walk(paths(seed), speed, 0.0, samples)) > rho
@@ -130,7 +130,7 @@ def test_ambient_motion_decorrelates_as_its_doppler_says() -> None:
 
 def test_it_is_the_same_both_ways() -> None:
     for k in (0.0, 4.0):
-        air = paths(k=k, stations=5)
+        air = paths(k=k)
         places = [(0.0, 0.0), (3.0, 1.0), (7.0, 7.0), (0.0, 0.0), (-4.0, 20.0)]
         air.move(places, places, 0, TICK)
         rows = [air.row_db(station, 0) for station in range(5)]
@@ -146,7 +146,7 @@ def test_a_place_keeps_its_gain() -> None:
 
 def propagation(section: RadioSection, *places: tuple[float, float]) -> Propagation:
     robots = tuple(range(1, len(places) + 1))
-    made = Propagation(link_budget(section), robots, (), None, fast_fading(section, 1, len(robots)))
+    made = Propagation(link_budget(section), robots, (), None, fast_fading(section, 1))
     made.update(present(*places), (), (), (0, TICK))
     return made
 
@@ -163,7 +163,7 @@ def test_robots_move_evenly_within_a_tick() -> None:
     at_start = moving.snr_row(0, 2 * TICK)[1]
     mean_db = moving.budget.mean_snr_db
     gains = [half_way - mean_db(6.1), at_end - mean_db(6.1), at_start - mean_db(6.2)]
-    air = fast_fading(RAYLEIGH, 1, 2)
+    air = fast_fading(RAYLEIGH, 1)
     assert air is not None
     assert gains[0] == pytest.approx(standing(air, (0.0, 0.0), (6.05, 0.0)))
     assert gains[1] == pytest.approx(standing(air, (0.0, 0.0), (6.1, 0.0)))
@@ -172,7 +172,7 @@ def test_robots_move_evenly_within_a_tick() -> None:
 
 def test_fast_fading_comes_on_top_of_the_mean_and_spares_who_is_out_of_reach() -> None:
     found = propagation(RAYLEIGH, (0.0, 0.0), (6.0, 0.0), (1e6, 0.0))
-    air = fast_fading(RAYLEIGH, 1, 3)
+    air = fast_fading(RAYLEIGH, 1)
     assert air is not None
     places = [(0.0, 0.0), (6.0, 0.0), (1e6, 0.0)]
     air.move(places, places, 0, TICK)
@@ -189,12 +189,12 @@ def test_nobody_is_sure_to_sense_a_station_under_fast_fading() -> None:
 
 
 def test_a_scenario_names_its_kind() -> None:
-    assert fast_fading(RadioSection(), 1, 2) is None
+    assert fast_fading(RadioSection(), 1) is None
     places = [(0.0, 0.0), (6.0, 0.0)]
     gains = []
     for kind, k_db in (("rayleigh", 6.0), ("rayleigh", 20.0), ("rician", 6.0), ("rician", 40.0)):
         section = RadioSection(fast_fading=kind, rician_k_db=k_db)  # type: ignore[arg-type]
-        air = fast_fading(section, 1, 2)
+        air = fast_fading(section, 1)
         assert air is not None
         gains.append(standing(air, *places))
     assert gains[0] == gains[1]

@@ -19,8 +19,8 @@ Places = np.ndarray
 INDOOR = RadioSection(preset="indoor")
 
 
-def field(seed: int = 1, stations: int = 2) -> Shadowing:
-    return Shadowing(generator(seed, "shadowing"), SIGMA_DB, DECORRELATION, stations)
+def field(seed: int = 1) -> Shadowing:
+    return Shadowing(generator(seed, "shadowing"), SIGMA_DB, DECORRELATION)
 
 
 def between(ground: Shadowing, a: Places, b: Places) -> Places:
@@ -110,7 +110,7 @@ coordinate = st.floats(-1e5, 1e5)
 def test_it_is_the_same_both_ways_and_whoever_stands_there(
     ax: float, ay: float, bx: float, by: float
 ) -> None:
-    ground = field(stations=3)
+    ground = field()
     ground.place([(ax, ay), (bx, by), (ax + 50.0, ay)])
     there, back = ground.row_db(0)[1], ground.row_db(1)[0]
     assert there == back
@@ -134,17 +134,17 @@ def test_another_seed_is_another_ground() -> None:
     budget = link_budget(INDOOR)
     rows = []
     for seed in (1, 1, 2):
-        ground = shadowing(budget, seed, 2)
+        ground = shadowing(budget, seed)
         assert ground is not None
         ground.place([(0.0, 0.0), (5.0, 5.0)])
         rows.append(ground.row_db(0)[1])
     assert rows[0] == rows[1] != rows[2]
-    assert shadowing(link_budget(RadioSection()), 1, 2) is None
+    assert shadowing(link_budget(RadioSection()), 1) is None
 
 
 def propagation(section: RadioSection, *places: tuple[float, float]) -> Propagation:
     budget = link_budget(section)
-    ground = shadowing(budget, 3, len(places))
+    ground = shadowing(budget, 3)
     found = Propagation(budget, tuple(range(1, len(places) + 1)), (), ground)
     found.update(present(*places), (), ())
     return found
@@ -154,7 +154,7 @@ def test_the_shadow_comes_on_top_of_the_path_loss() -> None:
     places = ((0.0, 0.0), (20.0, 0.0), (0.0, 7.0))
     bare = propagation(RadioSection(preset="indoor", spatial_shadowing_db=0.0), *places)
     shadowed = propagation(INDOOR, *places)
-    ground = shadowing(link_budget(INDOOR), 3, 3)
+    ground = shadowing(link_budget(INDOOR), 3)
     assert ground is not None
     ground.place(list(places))
     for sender in range(3):
@@ -168,7 +168,7 @@ def test_reach_misses_nobody_whom_a_shadow_lets_through(places: list[tuple[float
     """Whoever is heard above the floor of reach, shadow included, is in the row."""
     section = RadioSection(preset="indoor", path_loss_exponent=4.0, tx_power_dbm=0.0)
     found, budget = propagation(section, *places), link_budget(section)
-    ground = shadowing(budget, 3, len(places))
+    ground = shadowing(budget, 3)
     assert ground is not None
     ground.place(places)
     for a, here in enumerate(places):
