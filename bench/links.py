@@ -31,9 +31,9 @@ NEAREST, FARTHEST, SPEED = 3.0, 28.0, 0.5
 KINDS = {
     "one draw for each frame, 4 dB (preset thesis)": RadioSection(routing="direct"),
     "shadowing of places, 9 dB, 1/e after 1.8 m": RadioSection(
-        routing="direct", shadowing_db=0.5, spatial_shadowing_db=9.0
+        routing="direct", shadowing_db=0.6, spatial_shadowing_db=9.0
     ),
-    "Rayleigh fading": RadioSection(routing="direct", shadowing_db=0.5, fast_fading="rayleigh"),
+    "Rayleigh fading": RadioSection(routing="direct", shadowing_db=0.6, fast_fading="rayleigh"),
 }
 
 COLUMNS = {
@@ -55,7 +55,7 @@ def walk(section: RadioSection, seed: int) -> tuple[FloatArray, FloatArray]:
     outbox = (Transmission(2, b"", MSDU_BYTES),)
     requests = (TransmitRequest(1, 0.0, 0.0, outbox), TransmitRequest(2, SPEED, 0.0, ()))
     still = Twist(0.0, 0.0)
-    for tick, x in enumerate(places.tolist()):
+    for tick, x in enumerate(places.tolist(), 1):
         present = (
             Presence(1, 0, Pose(0.0, 0.0, 0.0), still, False),
             Presence(2, 0, Pose(x, 0.0, 0.0), Twist(SPEED, 0.0), False),
@@ -64,7 +64,7 @@ def walk(section: RadioSection, seed: int) -> tuple[FloatArray, FloatArray]:
         for verdict in radio.carry(truth).record.verdicts:
             if verdict.status is DeliveryStatus.DELIVERED:
                 taken = (verdict.arrival_ns - verdict.service_start_ns) / 1e9
-                measured[verdict.offered_ns // PERIOD + 1] = 8.0 * MSDU_BYTES / taken
+                measured[verdict.offered_ns // PERIOD] = 8.0 * MSDU_BYTES / taken
     return np.stack((steps, steps)), np.stack((measured[:one_way], measured[one_way:][::-1]))
 
 
@@ -106,7 +106,7 @@ def figure(file: Path) -> None:
         axes.axhline(THRESHOLD_BPS / 1e6, color="grey", linewidth=0.8, linestyle=":")
         axes.set_title(name, fontsize=10)
         axes.set_ylabel("Mb/s")
-        axes.set_ylim(0.0, 0.85)
+        axes.set_ylim(0.0, 0.9)
     axes.set_xlabel("distance of the two robots [m]")
     axes.legend(loc="lower left")
     with mpl.rc_context({"svg.hashsalt": "onehop"}):

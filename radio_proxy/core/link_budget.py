@@ -82,7 +82,7 @@ _PRESETS: dict[str, dict[str, float]] = {
         "tx_power_dbm": 15.0,
         "path_loss_exponent": 2.4,
         "noise_dbm": THERMAL_NOISE_DBM + 7.0,
-        "shadowing_db": 0.5,
+        "shadowing_db": 0.6,
         "receive_threshold_db": 0.0,
         "carrier_sense_db": 0.0,
         "spatial_shadowing_db": 9.0,
