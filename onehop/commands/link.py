@@ -38,7 +38,7 @@ def link(
         rows.add_row(
             f"{row.distance_m:g}",
             f"{row.snr_db:.1f}",
-            f"{row.ber:.2e}",
+            f"{row.ber:.1e}",
             *(places if made.places_differ else (f"{row.thesis_ber:.3f}",)),
             f"{row.frame_success:.4f}",
             f"{row.closed_form_bps / 1e6:.4f}",
