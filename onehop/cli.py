@@ -40,6 +40,13 @@ class Driver(StrEnum):
 class Preset(StrEnum):
     THESIS = "thesis"
     PHYSICAL = "physical"
+    INDOOR = "indoor"
+
+
+class FastFading(StrEnum):
+    NONE = "none"
+    RAYLEIGH = "rayleigh"
+    RICIAN = "rician"
 
 
 class Planner(StrEnum):
@@ -157,6 +164,7 @@ def link(
         str, Option(metavar="A,B,C", help="Distances [m].")
     ] = "1,5,8,10,12,15,20,25,30,40",
     preset: Annotated[Preset, Option(help="Propagation.")] = Preset.THESIS,
+    fast_fading: Annotated[FastFading, Option(help="Of many paths, place by place.")] = FastFading.NONE,
     rate: Annotated[float, Option(help="1, 2, 5.5 or 11 Mb/s.")] = 1.0,
     msdu: Annotated[int, Option(help="Payload of a frame [B].", callback=within(numbers.MSDU))] = 800,
     seed: Annotated[int, Option(help="Seed of fading and backoff.", callback=within(numbers.SEED))] = 1,
@@ -166,13 +174,13 @@ def link(
     ] = 20.0,
     as_json: AsJson = False,
 ) -> None:
-    """Link budget over distance: SNR, error rates, throughput.
+    """Link budget over distance: SNR, error rates, throughput, and how much places differ.
 
-    Example: onehop link --distance 5,10,20 --preset thesis
+    Example: onehop link --distance 5,10,20 --preset indoor
     """
     from onehop.commands import link as command
 
-    _leave(command.link(distance, preset.value, rate, msdu, seed, seconds, as_json))
+    _leave(command.link(distance, preset.value, fast_fading.value, rate, msdu, seed, seconds, as_json))
 
 
 @app.command()

@@ -12,11 +12,18 @@ from onehop.contracts.ranges import Range
 class RadioSection:
     """Radio of all robots (thesis 3.7): propagation, the 802.11b link, and the ad hoc routing.
 
-    preset: "thesis" (0.2 W over free space, SNR 60 dB at 1 m) or "physical" (15 dBm, noise figure
-        7 dB, exponent 2.6). The next six are None to be as the preset says.
+    preset: "thesis" (0.2 W over free space, SNR 60 dB at 1 m), "physical" (15 dBm, noise figure
+        7 dB, exponent 2.6) or "indoor" (the same card in an office as it was measured, docs/links.md).
+        The next seven are None to be as the preset says.
     tx_power_dbm; path_loss_exponent n; noise_dbm: floor in 22 MHz; shadowing_db: sigma of the
-        log-normal fading; receive_threshold_db: lowest SINR that is received;
+        log-normal fading that is drawn anew, place or no place (see fading);
+        receive_threshold_db: lowest SINR that is received;
         carrier_sense_db: lowest SNR of a carrier that makes the medium busy.
+    spatial_shadowing_db: sigma of the log-normal shadowing between places. decorrelation_distance: that
+        one end moves until it is correlated by 1/e [m] (Gudmundson 1991).
+    fast_fading: of many paths, "none", "rayleigh" or "rician", with the Doppler of the robots' motion.
+        rician_k_db: power of the line of sight over all other paths. ambient_doppler_hz: of what else
+        moves; 0 leaves the channel of standing robots as it is.
     frequency_hz, antenna_gain_dbi (each end), system_loss_db, reference_distance d0 [m].
     fading: a new draw for each "frame", or one for each "exchange". wall_loss_db: per wall crossed.
     rate_mbps: of data frames. rts_threshold_bytes: longer MSDUs are sent with RTS/CTS (2304: never).
@@ -28,7 +35,7 @@ class RadioSection:
     gamma_distance: remaining distance per unit of gamma in p_r = min(1, (1/v)^gamma) [m].
     """
 
-    preset: Literal["thesis", "physical"] = "thesis"
+    preset: Literal["thesis", "physical", "indoor"] = "thesis"
     rate_mbps: Annotated[float, Range(1.0, 11.0)] = 1.0
     retry_limit: Annotated[int, Range(1, 255)] = 7
     tx_power_dbm: Annotated[float, Range(-100.0, 100.0)] | None = None
@@ -37,6 +44,11 @@ class RadioSection:
     shadowing_db: Annotated[float, Range(0.0, 40.0)] | None = None
     receive_threshold_db: Annotated[float, Range(-50.0, 100.0)] | None = None
     carrier_sense_db: Annotated[float, Range(-50.0, 100.0)] | None = None
+    spatial_shadowing_db: Annotated[float, Range(0.0, 40.0)] | None = None
+    decorrelation_distance: Annotated[float, Range(1e-2, 1e4)] = 1.8
+    fast_fading: Literal["none", "rayleigh", "rician"] = "none"
+    rician_k_db: Annotated[float, Range(-40.0, 40.0)] = 6.0
+    ambient_doppler_hz: Annotated[float, Range(0.0, 1e3)] = 0.0
     frequency_hz: Annotated[float, Range(1e6, 1e12)] = 2.4e9
     antenna_gain_dbi: Annotated[float, Range(-50.0, 50.0)] = 0.0
     system_loss_db: Annotated[float, Range(-100.0, 100.0)] = 0.0

@@ -12,6 +12,9 @@ from radio_proxy.core.airtime import Timing
 from radio_proxy.core.error_rates import frame_success
 from radio_proxy.core.link_budget import LinkBudget
 
+FADED_STEP = 0.0625
+"""Faded SNRs are rounded to multiples of it: error rates of CCK take milliseconds each [dB]."""
+
 
 def bianchi_tau(stations: int, window: int, stages: int) -> tuple[float, float]:
     """Probabilities that a station transmits in a slot, and that it then collides (eq. 7 and 9).
@@ -66,7 +69,8 @@ def frame_probability(budget: LinkBudget, snr_db: float, rate_mbps: float, size_
         weight += density
         faded = snr_db + budget.shadowing_db * z
         if faded >= budget.receive_threshold_db:
-            total += density * frame_success(rate_mbps, faded, 8 * size_bytes)
+            rounded = round(faded / FADED_STEP) * FADED_STEP
+            total += density * frame_success(rate_mbps, rounded, 8 * size_bytes)
     return total / weight
 
 

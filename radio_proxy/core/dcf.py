@@ -185,7 +185,7 @@ class Dcf:
         return False
 
     def _begin(self, station: Station, fade_db: float | None, now: int) -> Emission:
-        emission = self.medium.begin(station.index, fade_db)
+        emission = self.medium.begin(station.index, fade_db, now)
         self._contention.on_busy(emission, now)
         return emission
 
@@ -195,7 +195,8 @@ class Dcf:
         if responder == EVERYONE:
             self._contention.on_idle(now)
         else:
-            self._contention.on_idle(now, self.medium.propagation.mean_snr_row(responder))
+            response = self.medium.propagation.snr_row(responder, now + self.timing.sifs)
+            self._contention.on_idle(now, response)
 
     def _on_broadcast_end(self, exchange: Exchange, now: int) -> None:
         sender = exchange.sender

@@ -1,7 +1,8 @@
 """What a signal loses on its way, as a scenario sets it (thesis 3.7.1).
 
 Pr(d) = Pt Gt Gr lambda^2 / ((4 pi d0)^2 L) * (d0/d)^n * 10^(X/10), X ~ N(0, sigma) dB. What is kept is
-the mean SNR above the noise floor; the fading X is drawn by the medium.
+the mean SNR above the noise floor; the draw X of each frame is the medium's, shadowing that belongs to
+places is in shadowing.py, fast fading in fast_fading.py.
 """
 
 import math
@@ -19,6 +20,10 @@ REACH_DB = -10.0
 THERMAL_NOISE_DBM = -100.55
 """kTB of a 22 MHz channel at 290 K [dBm]."""
 
+CLIP = 3.0
+"""Spatial shadowing is held within so many standard deviations, which one place in 370 would leave: so
+there is a distance beyond which nobody is heard."""
+
 
 @dataclass(frozen=True, slots=True)
 class LinkBudget:
@@ -32,6 +37,8 @@ class LinkBudget:
     receive_threshold_db: float
     carrier_sense_db: float
     wall_loss_db: float
+    spatial_shadowing_db: float = 0.0
+    decorrelation_distance: float = 1.0
 
     def mean_snr_db(self, distance: float) -> float:
         """Mean SNR without walls at a distance [m]; nearer than d0 counts as d0."""
@@ -45,7 +52,8 @@ class LinkBudget:
     @property
     def reach(self) -> float:
         """Distance beyond which a signal neither gets through nor interferes [m]."""
-        margin = self.snr_reference_db - REACH_DB
+        strongest_db = self.snr_reference_db + CLIP * self.spatial_shadowing_db
+        margin = strongest_db - REACH_DB
         return self.reference_distance * elementary.power_of_ten(
             max(0.0, margin / (10.0 * self.exponent))
         )
@@ -69,8 +77,23 @@ _PRESETS: dict[str, dict[str, float]] = {
         "path_loss_exponent": 2.6,
         "noise_dbm": THERMAL_NOISE_DBM + 7.0,
     },
+    # The same card in an office; docs/links.md has the measurements.
+    "indoor": {
+        "tx_power_dbm": 15.0,
+        "path_loss_exponent": 2.4,
+        "noise_dbm": THERMAL_NOISE_DBM + 7.0,
+        "shadowing_db": 0.6,
+        "receive_threshold_db": 0.0,
+        "carrier_sense_db": 0.0,
+        "spatial_shadowing_db": 9.0,
+    },
 }
-_EITHER_PRESET = {"shadowing_db": 4.0, "receive_threshold_db": 32.0, "carrier_sense_db": 10.0}
+_ANY_PRESET = {
+    "shadowing_db": 4.0,
+    "receive_threshold_db": 32.0,
+    "carrier_sense_db": 10.0,
+    "spatial_shadowing_db": 0.0,
+}
 """Fading and threshold of the thesis's simulation; carrier sense as a DSSS receiver locks on."""
 
 
@@ -79,7 +102,7 @@ def link_budget(section: RadioSection) -> LinkBudget:
 
     def value(key: str) -> float:
         given: float | None = getattr(section, key)
-        return {**_PRESETS[section.preset], **_EITHER_PRESET}[key] if given is None else given
+        return {**_ANY_PRESET, **_PRESETS[section.preset]}[key] if given is None else given
 
     received_dbm = (
         value("tx_power_dbm")
@@ -96,4 +119,6 @@ def link_budget(section: RadioSection) -> LinkBudget:
         receive_threshold_db=value("receive_threshold_db"),
         carrier_sense_db=value("carrier_sense_db"),
         wall_loss_db=section.wall_loss_db,
+        spatial_shadowing_db=value("spatial_shadowing_db"),
+        decorrelation_distance=section.decorrelation_distance,
     )

@@ -14,6 +14,8 @@ from radio_proxy.core.airtime import dsss, printed_throughput_bps
 from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized, frame_probability
 from radio_proxy.core.error_rates import bit_error_rate, thesis_ber
 from radio_proxy.core.link_budget import link_budget
+from radio_proxy.core.place_gains import place_gains_db
+from radio_proxy.core.propagation import OWN_DB, SILENT_DB
 from radio_proxy.core.saturation import Saturation, pair, ring
 
 
@@ -21,8 +23,10 @@ from radio_proxy.core.saturation import Saturation, pair, ring
 class LinkRow:
     """One distance. snr_db: mean; ber: at that SNR, thesis_ber: by eq. 3.24, 3.25 read literally.
 
-    frame_success: P(a data frame gets through) over the fading. closed_form_bps: throughput of one
-    saturated sender by theory. The rest is measured on it; delay_us is None when nothing arrives.
+    frame_success: P(a data frame gets through) over the draw of each frame. closed_form_bps: throughput
+    of one saturated sender by theory. good_places: share of the places at this distance, by spatial
+    shadowing and fast fading, where that reaches the threshold; nine_of_ten_bps: what nine of ten places
+    reach. The rest is measured at a place of mean SNR; delay_us is None when nothing arrives.
     """
 
     distance_m: float
@@ -31,6 +35,8 @@ class LinkRow:
     thesis_ber: float
     frame_success: float
     closed_form_bps: float
+    good_places: float
+    nine_of_ten_bps: float
     delivery_ratio: float
     throughput_bps: float
     delay_us: float | None
@@ -38,9 +44,13 @@ class LinkRow:
 
 @dataclass(frozen=True, slots=True)
 class LinkTable:
-    """Link budget over distance, with the bounds that a follower compares with."""
+    """Link budget over distance, with the bounds that a follower compares with.
+
+    places_differ: by spatial shadowing or fast fading.
+    """
 
     rows: tuple[LinkRow, ...]
+    places_differ: bool
     ideal_throughput_bps: float
     eq_3_16_throughput_bps: float
     threshold_bps: float
@@ -63,16 +73,50 @@ def link_table(
     """The link at each distance [m]; `seconds` of simulated time are measured for each."""
     rts_cts = msdu_bytes > section.rts_threshold_bytes
     header = section.mac_header_bytes
+    places = Places(section, msdu_bytes)
     return LinkTable(
-        rows=tuple(_link_row(section, distance, msdu_bytes, seed, seconds) for distance in distances),
+        rows=tuple(
+            _link_row(section, distance, msdu_bytes, seed, seconds, places) for distance in distances
+        ),
+        places_differ=len(places.gains_db) > 1,
         ideal_throughput_bps=ideal_throughput_bps(section.rate_mbps, msdu_bytes, rts_cts, header),
         eq_3_16_throughput_bps=printed_throughput_bps(section.rate_mbps, msdu_bytes),
         threshold_bps=threshold_bps(section.rate_mbps, msdu_bytes),
     )
 
 
+class Places:
+    """What the places at one distance differ by. gains_db: equally likely ones, ascending [dB]."""
+
+    def __init__(self, section: RadioSection, msdu_bytes: int) -> None:
+        self._section, self._msdu_bytes = section, msdu_bytes
+        self.gains_db = place_gains_db(link_budget(section), section)
+        self._good_snr_db = self._least_good_snr_db()
+
+    def good_share(self, snr_db: float) -> float:
+        """Share of the places of this mean SNR where one saturated sender reaches the threshold."""
+        return float((snr_db + self.gains_db >= self._good_snr_db).mean())
+
+    def nine_of_ten_bps(self, snr_db: float) -> float:
+        """Throughput that nine of ten places of this mean SNR reach [bit/s]."""
+        worst_tenth_db = float(self.gains_db[len(self.gains_db) // 10])
+        return _closed_form_bps(self._section, snr_db + worst_tenth_db, self._msdu_bytes)
+
+    def _least_good_snr_db(self) -> float:
+        """SNR from which on the throughput reaches the threshold, by bisection."""
+        least_bps = threshold_bps(self._section.rate_mbps, self._msdu_bytes)
+        low, high = SILENT_DB, OWN_DB
+        while high - low > 0.01:
+            middle = (low + high) / 2.0
+            if _closed_form_bps(self._section, middle, self._msdu_bytes) >= least_bps:
+                high = middle
+            else:
+                low = middle
+        return high
+
+
 def _link_row(
-    section: RadioSection, distance: float, msdu_bytes: int, seed: int, seconds: float
+    section: RadioSection, distance: float, msdu_bytes: int, seed: int, seconds: float, places: Places
 ) -> LinkRow:
     budget, timing = link_budget(section), dsss(section)
     snr_db = budget.mean_snr_db(distance)
@@ -89,25 +133,28 @@ def _link_row(
         ber=bit_error_rate(section.rate_mbps, snr_db),
         thesis_ber=thesis_ber(snr_db, 8 * msdu_bytes),
         frame_success=success,
-        closed_form_bps=_closed_form_bps(section, snr_db, msdu_bytes, success),
+        closed_form_bps=_closed_form_bps(section, snr_db, msdu_bytes),
+        good_places=places.good_share(snr_db),
+        nine_of_ten_bps=places.nine_of_ten_bps(snr_db),
         delivery_ratio=delivered / ended if ended else 0.0,
         throughput_bps=8.0 * msdu_bytes * delivered / seconds,
         delay_us=tally.delay / delivered / 1000.0 if delivered else None,
     )
 
 
-def _closed_form_bps(
-    section: RadioSection, snr_db: float, msdu_bytes: int, data_success: float
-) -> float:
+def _closed_form_bps(section: RadioSection, snr_db: float, msdu_bytes: int) -> float:
     """Throughput of one saturated sender by the sum over its attempts."""
-    budget, rts_cts = link_budget(section), msdu_bytes > section.rts_threshold_bytes
-    theory = SaturatedLink(dsss(section), msdu_bytes, section.retry_limit, rts_cts)
+    budget, timing = link_budget(section), dsss(section)
+    rts_cts = msdu_bytes > section.rts_threshold_bytes
+    theory = SaturatedLink(timing, msdu_bytes, section.retry_limit, rts_cts)
+    size_bytes = timing.mac_header_bytes + msdu_bytes
+    data = frame_probability(budget, snr_db, section.rate_mbps, size_bytes)
     if section.fading == "exchange":
-        return 1e6 * theory.one_draw_per_exchange(data_success)[1]
+        return 1e6 * theory.one_draw_per_exchange(data)[1]
     rts, ack = (
         frame_probability(budget, snr_db, BASIC_RATE_MBPS, size) for size in (RTS_BYTES, ACK_BYTES)
     )
-    return 1e6 * theory.one_draw_per_frame(rts, ack, data_success, ack)[1]
+    return 1e6 * theory.one_draw_per_frame(rts, ack, data, ack)[1]
 
 
 def saturation_table(

@@ -62,9 +62,9 @@ class Medium:
         """One draw of the log-normal fading [dB]."""
         return self._sigma_db * self._draws.normal() if self._sigma_db else 0.0
 
-    def begin(self, source: StationIndex, fade_db: float | None) -> Emission:
+    def begin(self, source: StationIndex, fade_db: float | None, now: int) -> Emission:
         """Start a transmission; it and every other one in progress interfere with each other."""
-        emission = Emission(source, self.propagation.mean_snr_row(source), fade_db)
+        emission = Emission(source, self.propagation.snr_row(source, now), fade_db)
         for other in self.emissions:
             other.overlaps += (emission.row,)
             emission.overlaps += (other.row,)

@@ -1,6 +1,7 @@
 """At which SNR each robot receives each other: path loss, walls, cuts and jams (thesis 3.7.1).
 
-The mean SNR of every pair, sender by sender, computed when a sender first transmits in a tick.
+The mean SNR of every pair, with the shadowing between their places, is computed sender by sender when
+one first transmits in a tick; fast fading comes on top for every emission.
 """
 
 import math
@@ -9,7 +10,9 @@ from onehop.contracts import elementary
 from onehop.contracts.messages import Cut, Jam, Presence
 from radio_proxy.core.addresses import RobotId, StationIndex
 from radio_proxy.core.airtime import delay_ns
+from radio_proxy.core.fast_fading import FastFading
 from radio_proxy.core.link_budget import LinkBudget
+from radio_proxy.core.shadowing import Shadowing
 
 SILENT_DB = -200.0
 """SNR of what cannot be received at all: cut off, absent, or out of reach [dB]."""
@@ -39,11 +42,21 @@ def walls_crossed(walls: tuple[Wall, ...], x0: float, y0: float, x1: float, y1: 
 class Propagation:
     """Who is where in this tick, and at which mean SNR each receives each. robots: sorted ids.
 
-    noise_rise_db: noise at every station above the floor, by jams [dB].
+    noise_rise_db: noise at every station above the floor, by jams [dB]. shadowing, fast_fading: None
+    where there is none.
     """
 
-    def __init__(self, budget: LinkBudget, robots: tuple[RobotId, ...], walls: tuple[Wall, ...]) -> None:
+    def __init__(
+        self,
+        budget: LinkBudget,
+        robots: tuple[RobotId, ...],
+        walls: tuple[Wall, ...],
+        shadowing: Shadowing | None = None,
+        fast_fading: FastFading | None = None,
+    ) -> None:
         self.budget = budget
+        self._shadowing = shadowing
+        self._fast_fading = fast_fading
         self._index: dict[int, StationIndex] = {r: StationIndex(i) for i, r in enumerate(robots)}
         self._count = len(robots)
         self._walls = walls if budget.wall_loss_db else ()
@@ -57,13 +70,23 @@ class Propagation:
         self.noise_rise_db: list[float] = [0.0] * self._count
         self._jams: tuple[Jam, ...] = ()
         self._present: tuple[Presence, ...] = ()
+        self._before: tuple[Presence, ...] = ()
+        self._tick = 0, 0
         self._stale = True
 
     def update(
-        self, present: tuple[Presence, ...], cuts: tuple[Cut, ...], jams: tuple[Jam, ...]
+        self,
+        present: tuple[Presence, ...],
+        cuts: tuple[Cut, ...],
+        jams: tuple[Jam, ...],
+        tick: tuple[int, int] = (0, 0),
     ) -> None:
-        """Take over the poses and faults of a tick; nothing is computed until somebody transmits."""
-        self._present = present
+        """Take over the poses and faults of a tick; nothing is computed until somebody transmits.
+
+        tick: when it begins and ends [ns]; robots are at these poses at its end.
+        """
+        self._before, self._present = self._present, present
+        self._tick = tick
         self._cuts = cuts
         self._jams = jams
         self._stale = True
@@ -76,6 +99,17 @@ class Propagation:
         if row is None:
             row = self._rows[sender] = self._compute_row(sender)
         return row
+
+    def snr_row(self, sender: StationIndex, now: int) -> list[float]:
+        """SNR at every station of what `sender` begins to emit now [dB]."""
+        row = self.mean_snr_row(sender)
+        if self._fast_fading is None:
+            return row
+        gains = self._fast_fading.row_db(sender, now)
+        return [
+            mean + gain if SILENT_DB < mean < OWN_DB else mean
+            for mean, gain in zip(row, gains, strict=True)
+        ]
 
     def delay_ns(self, a: StationIndex, b: StationIndex) -> int:
         """Propagation delay between two stations in this tick."""
@@ -94,13 +128,13 @@ class Propagation:
         return math.hypot(here[0] - there[0], here[1] - there[1])
 
     def is_sensed_by_all(self, sender: StationIndex) -> bool:
-        """Whether every present robot senses what `sender` emits."""
+        """Whether every present robot is sure to sense what `sender` emits (not under fast fading)."""
         if self._stale:
             self._place_robots()
         sensed = self._sensed_by_all.get(sender)
         if sensed is None:
             sensed = False
-            if sender in self._positions:
+            if self._fast_fading is None and sender in self._positions:
                 row, least = self.mean_snr_row(sender), self.budget.carrier_sense_db
                 sensed = all(row[i] >= least for i in self._positions)
             self._sensed_by_all[sender] = sensed
@@ -135,8 +169,18 @@ class Propagation:
             self._positions[index] = (x, y)
             cell = math.floor(x / reach), math.floor(y / reach)
             self._cells.setdefault(cell, []).append((index, x, y))
+        if self._shadowing is not None:
+            self._shadowing.place(self._places({}))
+        if self._fast_fading is not None:
+            before = {self._index[p.robot]: (p.pose.x, p.pose.y) for p in self._before}
+            self._fast_fading.move(self._places(before), self._places({}), *self._tick)
         if self._jams or any(self.noise_rise_db):
             self.noise_rise_db = [self._noise_rise(StationIndex(i)) for i in range(self._count)]
+
+    def _places(self, other: dict[StationIndex, tuple[float, float]]) -> list[tuple[float, float]]:
+        """Where the stations are, or elsewhere; the origin for the absent."""
+        found = {**self._positions, **other}
+        return [found.get(StationIndex(i), (0.0, 0.0)) for i in range(self._count)]
 
     def _noise_rise(self, index: StationIndex) -> float:
         position = self._positions.get(index)
@@ -155,6 +199,7 @@ class Propagation:
         reach, nearest = budget.reach, budget.reference_distance * budget.reference_distance
         reference_db, slope_db = budget.snr_reference_db, 5.0 * budget.exponent
         x, y = self._positions[sender]
+        shadows = self._shadowing.row_db(sender) if self._shadowing is not None else None
         column, line = math.floor(x / reach), math.floor(y / reach)
         for near in ((column + dx, line + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)):
             for other, there_x, there_y in self._cells.get(near, ()):
@@ -166,6 +211,8 @@ class Propagation:
                     row[other] = reference_db - slope_db * elementary.log10(square / nearest)
                 else:
                     continue
+                if shadows is not None:
+                    row[other] += shadows[other]
                 if self._walls:
                     crossed = walls_crossed(self._walls, x, y, there_x, there_y)
                     row[other] -= crossed * budget.wall_loss_db

@@ -18,6 +18,7 @@ from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.fast_fading import fast_fading
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.link_layer import LinkLayer
 from radio_proxy.core.nic import Nic
@@ -26,6 +27,7 @@ from radio_proxy.core.routing.direct import DirectRouter
 from radio_proxy.core.routing.interface import NicServices, Router
 from radio_proxy.core.routing.mrdv import MrdvRouter
 from radio_proxy.core.routing.mrsr import MrsrRouter
+from radio_proxy.core.shadowing import shadowing
 
 
 class Radio:
@@ -37,7 +39,14 @@ class Radio:
         self._period = briefing.period_ns
         self._section = section
         self._draws = Draws(generator(briefing.seed, "radio"))
-        self._propagation = Propagation(link_budget(section), robots, briefing.walls)
+        budget, seed = link_budget(section), briefing.seed
+        self._propagation = Propagation(
+            budget,
+            robots,
+            briefing.walls,
+            shadowing(budget, seed),
+            fast_fading(section, seed),
+        )
         self._deliveries = Deliveries()
         self._link = LinkLayer(robots, section, self._propagation, self._draws, self._deliveries)
         self._events = self._link.events
@@ -50,7 +59,7 @@ class Radio:
         """What reaches whom in the tick that ends at truth.time_ns, and what became of the rest."""
         start = truth.time_ns - self._period
         self._update_nics(truth, start)
-        self._propagation.update(truth.present, truth.cuts, truth.jams)
+        self._propagation.update(truth.present, truth.cuts, truth.jams, (start, truth.time_ns))
         self._requests = truth.transmit_requests
         talking = [request for request in truth.transmit_requests if request.outbox]
         if talking:

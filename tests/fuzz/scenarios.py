@@ -20,8 +20,9 @@ _MISSION = {
 _WORDS = {
     "gains.policy": ("throughput", "constant", "smooth"), "gains.threshold": ("thesis", "ideal"),
     "team.profile": ("team", "thesis"), "team.orphan": ("stop", "solo"),
-    "planner.kind": ("escape", "modified", "original"), "radio.preset": ("thesis", "physical"),
+    "planner.kind": ("escape", "modified", "original"), "radio.preset": ("thesis", "physical", "indoor"),
     "radio.routing": ("direct", "mrsr", "mrdv"), "radio.fading": ("frame", "exchange"),
+    "radio.fast_fading": ("none", "rayleigh", "rician"),
 }  # fmt: skip
 _FAULTS = ("kill", "restart", "hold", "cut", "jam", "heal", "melt")
 

@@ -44,6 +44,16 @@ def test_arrays_have_the_bits_of_single_values(points: list[tuple[float, float]]
     assert elementary.directions(y, x).tolist() == [elementary.atan2(*one) for one in both]
 
 
+@given(st.lists(st.floats(-1e4, 1e4), min_size=1, max_size=20))
+def test_a_circle_has_cosine_and_sine_of_every_angle_in_turns(turns: list[float]) -> None:
+    cosines, sines = elementary.circle(np.array([turns]))
+    assert cosines.shape == sines.shape == (1, len(turns))
+    for turn, cosine, sine in zip(turns, cosines[0], sines[0], strict=True):
+        whole = turn - round(turn)
+        assert cosine == pytest.approx(math.cos(2.0 * math.pi * whole), abs=1e-11)
+        assert sine == pytest.approx(math.sin(2.0 * math.pi * whole), abs=1e-11)
+
+
 @pytest.mark.parametrize(
     ("name", "argument"),
     [

@@ -53,6 +53,14 @@ y = 20
 laser_fov_deg = 173.31
 """
 
+FADED = """
+[radio]
+preset = "indoor"
+tx_power_dbm = -25.0
+fast_fading = "rician"
+ambient_doppler_hz = 1.0
+"""
+
 pytestmark = [
     pytest.mark.slow,
     pytest.mark.skipif(
@@ -91,6 +99,17 @@ def test_a_mission_has_the_same_digest_without_fma_and_avx(tmp_path: Path, kerne
 
 def test_a_study_map_has_the_same_digest_without_fma_and_avx(tmp_path: Path, kernels: Path) -> None:
     assert _is_the_same(MAP3, tmp_path, kernels)
+
+
+def test_shadows_and_fades_have_the_same_digest_without_fma_and_avx(
+    tmp_path: Path, kernels: Path
+) -> None:
+    field(tmp_path)
+    scenario = tmp_path / "field.toml"
+    scenario.write_text(f"{scenario.read_text()}\n{FADED}")
+    assert _is_the_same(scenario, tmp_path, kernels)
+    losses = open_log(tmp_path / "here" / "mission.mcap").tables("verdicts")["verdicts"]
+    assert (losses["status"] == "below threshold").any(), "nothing was in a shadow"
 
 
 def test_what_a_team_can_do_has_the_same_digest_without_fma_and_avx(

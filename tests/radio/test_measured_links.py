@@ -1,0 +1,101 @@
+"""What shadows and fades do to the messages of a mission."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import pytest
+
+from onehop.contracts.messages import DeliveryStatus
+from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.randomness import generator
+from radio_proxy.core.draws import Draws
+from radio_proxy.core.fast_fading import fast_fading
+from radio_proxy.core.link_budget import link_budget
+from radio_proxy.core.medium import Medium
+from radio_proxy.core.propagation import Propagation
+from radio_proxy.core.shadowing import shadowing
+from tests.radio.missions import PERIOD, Mission, message
+from tests.radio.test_propagation import present
+
+SEED = 4
+ONCE = {"routing": "direct", "shadowing_db": 0.0, "retry_limit": 1}
+SHADOWED = RadioSection(spatial_shadowing_db=9.0, **ONCE)  # type: ignore[arg-type]
+FADED = RadioSection(fast_fading="rayleigh", **ONCE)  # type: ignore[arg-type]
+AT_THE_EDGE = 10.0 ** (28.0 / 20.0)
+"""Distance of mean SNR 32 dB, which is the receive threshold [m]."""
+
+PLACES = [(AT_THE_EDGE * math.cos(k), AT_THE_EDGE * math.sin(k)) for k in range(24)]
+Point = tuple[float, float]
+
+
+def arrives(section: RadioSection, start: Point, end: Point) -> bool:
+    """Whether a message from the origin reaches a robot that moves between these in its tick."""
+    mission = Mission({1: (0.0, 0.0), 2: start}, section, SEED)
+    mission.places[2] = end
+    mission.step({1: (message(2),)})
+    (verdict,) = mission.verdicts
+    return verdict.status is DeliveryStatus.DELIVERED
+
+
+def gain_of_the_ground(place: Point) -> float:
+    ground = shadowing(link_budget(SHADOWED), SEED)
+    assert ground is not None
+    ground.place([(0.0, 0.0), place])
+    return ground.row_db(0)[1]
+
+
+def gain_of_the_paths(place: Point) -> float:
+    air = fast_fading(FADED, SEED)
+    assert air is not None
+    air.move([(0.0, 0.0), place], [(0.0, 0.0), place], 0, PERIOD)
+    return air.row_db(0, 0)[1]
+
+
+def test_a_message_gets_through_where_the_ground_lets_it() -> None:
+    expected = [gain_of_the_ground(place) > 0.0 for place in PLACES]
+    assert [arrives(SHADOWED, place, place) for place in PLACES] == expected
+    assert len(set(expected)) == 2
+
+
+def test_a_message_gets_through_where_its_paths_add_up() -> None:
+    expected = [gain_of_the_paths(place) > 0.0 for place in PLACES]
+    assert [arrives(FADED, place, place) for place in PLACES] == expected
+    assert len(set(expected)) == 2
+
+
+def test_fades_are_those_of_the_way_within_a_tick() -> None:
+    """A message is over after 8 ms of the 50: it meets the first sixth of the way, not its end."""
+
+    def along(place: Point, share: float) -> Point:
+        return place[0] * (1.0 + 0.05 * share / AT_THE_EDGE), place[1]
+
+    seen = set()
+    for place in PLACES:
+        first_sixth = {gain_of_the_paths(along(place, k / 48)) > 0.1 for k in range(9)}
+        at_end = gain_of_the_paths(along(place, 1.0)) > 0.1
+        if len(first_sixth) == 1 and first_sixth != {at_end}:
+            assert arrives(FADED, place, along(place, 1.0)) is not at_end
+            seen.add(at_end)
+    assert seen == {True, False}
+
+
+@pytest.mark.parametrize(
+    ("section", "gain"), [(SHADOWED, gain_of_the_ground), (FADED, gain_of_the_paths)]
+)
+def test_carrier_sense_is_asked_of_shadows_and_fades(
+    section: RadioSection, gain: Callable[[Point], float]
+) -> None:
+    """At the distance where the mean is just the carrier sense, half of the places sense."""
+    section = replace(section, carrier_sense_db=32.0)
+    expected, sensed = [], []
+    for place in PLACES:
+        fields = shadowing(link_budget(section), SEED), fast_fading(section, SEED)
+        propagation = Propagation(link_budget(section), (1, 2), (), *fields)
+        propagation.update(present((0.0, 0.0), place), (), (), (0, PERIOD))
+        medium = Medium(propagation, Draws(generator(SEED, "radio")))
+        medium.begin(0, None, 0)
+        sensed.append(medium.is_busy(1))
+        expected.append(gain(place) > 0.0)
+    assert sensed == expected
+    assert len(set(expected)) == 2
