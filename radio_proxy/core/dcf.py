@@ -5,8 +5,10 @@ neighbours pass on, may collide and are then lost. That is the standard's way, a
 on any single one: beacons come every period, requests are jittered and repeated.
 
 An undisturbed exchange is taken in three events instead of eight: every station senses both of its ends,
-no other emission is in progress, nobody is about to transmit, and it ends before the horizon. Its frames
-are judged as ever; only the gaps of a SIFS, in which nobody may transmit, are not played.
+no other emission is in progress, nobody is about to transmit or awaits a response, and it ends before the
+horizon. Its frames are judged as ever; only the gaps of a SIFS, in which nobody may transmit, are not
+played. With a receive threshold so low that bystanders may receive its frames with errors (EIFS) all is
+played.
 """
 
 from dataclasses import dataclass, field
@@ -18,11 +20,12 @@ from radio_proxy.core.addresses import EVERYONE, StationIndex
 from radio_proxy.core.airtime import Timing, delay_ns
 from radio_proxy.core.contention import Contention, Frame, Station
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.emission import Emission, Judgement
 from radio_proxy.core.event_queue import EventQueue
-from radio_proxy.core.medium import Emission, Medium, Reservation
-
-Judgement = tuple[DeliveryStatus | None, float]
-"""What kept a frame from being received (None: nothing), and its SINR [dB]."""
+from radio_proxy.core.link_rules import LinkRules
+from radio_proxy.core.medium import Medium
+from radio_proxy.core.nav import Reservation
+from radio_proxy.core.retries import Retries
 
 
 class Listener(Protocol):
@@ -43,7 +46,8 @@ class Listener(Protocol):
 class Exchange:
     """One attempt to send a frame. delay: of propagation [ns]; fade_db, emission: as in the medium.
 
-    undisturbed: nobody can interfere with it. judged: frames that were judged before they end.
+    undisturbed: nobody can interfere with it. after_cts: the medium was reserved for its data. judged:
+    frames that were judged before they end.
     """
 
     sender: Station
@@ -53,6 +57,7 @@ class Exchange:
     fade_db: float | None
     emission: Emission
     undisturbed: bool = False
+    after_cts: bool = False
     judged: list[Judgement] = field(default_factory=list)
 
 
@@ -66,23 +71,19 @@ class Dcf:
         medium: Medium,
         draws: Draws,
         listener: Listener,
-        *,
-        retry_limit: int,
-        queue_frames: int,
-        rts_threshold_bytes: int,
-        fade_per_exchange: bool,
+        rules: LinkRules,
         take_shortcuts: bool = True,
     ) -> None:
         self.timing = timing
         self.medium = medium
         self._listener = listener
-        self._retry_limit = retry_limit
-        self._queue_frames = queue_frames
-        self._rts_threshold_bytes = rts_threshold_bytes
-        self._fade_per_exchange = fade_per_exchange
-        self._take_shortcuts = take_shortcuts
+        self._rules = rules
+        self._retries = Retries(rules)
+        self._take_shortcuts = take_shortcuts and medium.receivers.locks_are_certain
         self._stations = [Station(StationIndex(i)) for i in range(count)]
-        self._contention = Contention(timing, medium, draws)
+        self._awaiting = 0
+        self._listening: dict[Emission, list[Exchange]] = {}
+        self._contention = Contention(timing, medium, draws, rules)
         self.events = EventQueue(self._contention, self._on_access)
         self._at = self.events.at
 
@@ -95,7 +96,7 @@ class Dcf:
         """
         station = self._stations[index]
         waiting = len(station.urgent) + len(station.queue)
-        if waiting + (station.frame is not None) >= self._queue_frames:
+        if waiting + (station.frame is not None) >= self._rules.queue_frames:
             return False
         (station.urgent if frame.urgent else station.queue).append(frame)
         if station.frame is None:
@@ -128,25 +129,28 @@ class Dcf:
             self._contention.find_next()
             return
         frame.attempts += 1
-        fade_db = self.medium.fade_db() if self._fade_per_exchange else None
-        alone = not self.medium.emissions
-        emission = self._begin(station, fade_db, now)
-        alone = alone and self._contention.next_access > now + self.timing.turnaround
+        timing, rules = self.timing, self._rules
+        fade_db = self.medium.receivers.fade_db() if rules.fade_per_exchange else None
+        alone = not self.medium.emissions and not self._awaiting
+        rts_cts = frame.receiver != EVERYONE and frame.msdu_bytes > rules.rts_threshold_bytes
+        size = RTS_BYTES if rts_cts else timing.mac_header_bytes + frame.msdu_bytes
+        rate = timing.basic_rate_mbps if rts_cts or frame.receiver == EVERYONE else timing.rate_mbps
+        emission = self._begin(station, frame.receiver, rate, size, fade_db, now)
+        alone = alone and self._contention.next_access > now + timing.turnaround
         if frame.receiver == EVERYONE:
             delay = delay_ns(self.medium.propagation.farthest(station.index))
-            end = now + self.timing.broadcast(frame.msdu_bytes) + delay
+            end = now + timing.broadcast(frame.msdu_bytes) + delay
             exchange = Exchange(station, station, frame, delay, fade_db, emission)
             self._at(end, self._on_broadcast_end, exchange)
             return
         receiver = self._stations[frame.receiver]
         delay = self.medium.propagation.delay_ns(station.index, receiver.index)
         exchange = Exchange(station, receiver, frame, delay, fade_db, emission)
-        self._start(exchange, alone, now)
+        self._start(exchange, rts_cts, alone, now)
 
-    def _start(self, exchange: Exchange, alone: bool, now: int) -> None:
+    def _start(self, exchange: Exchange, rts_cts: bool, alone: bool, now: int) -> None:
         """Begin with RTS or data; an undisturbed exchange goes straight to the end of its data."""
         timing, frame = self.timing, exchange.frame
-        rts_cts = frame.msdu_bytes > self._rts_threshold_bytes
         before_data = timing.rts + timing.cts + 2 * (timing.sifs + exchange.delay) if rts_cts else 0
         data_end = now + before_data + timing.data(frame.msdu_bytes) + exchange.delay
         if alone and self._take_shortcuts:
@@ -164,161 +168,211 @@ class Dcf:
             end <= self.events.horizon
             and propagation.is_sensed_by_all(exchange.sender.index)
             and propagation.is_sensed_by_all(receiver)
-            and self.medium.reserved_until(receiver, now) <= now
+            and self.medium.nav.until(receiver, now) <= now
         )
 
     def _is_cleared(self, exchange: Exchange) -> bool:
         """Judge RTS and CTS of an undisturbed exchange in advance; if one fails, they are played out."""
-        rate_mbps = self.timing.basic_rate_mbps
-        emission, receiver, sender = exchange.emission, exchange.receiver.index, exchange.sender.index
-        rts = self.medium.receive(emission, receiver, rate_mbps, 8 * RTS_BYTES)
-        exchange.judged.append(rts)
-        if rts[0] is None:
-            row = self.medium.propagation.mean_snr_row(receiver)
-            response = Emission(receiver, row, exchange.fade_db)
-            cts = self.medium.receive(response, sender, rate_mbps, 8 * ACK_BYTES)
-            exchange.judged.append(cts)
-            if cts[0] is None:
+        medium, rts = self.medium, exchange.emission
+        exchange.judged.append(medium.judgement(rts, rts.receiver))
+        if exchange.judged[0][0] is None:
+            row = medium.propagation.mean_snr_row(rts.receiver)
+            rate, bits, fade_db = self.timing.basic_rate_mbps, 8 * ACK_BYTES, exchange.fade_db
+            cts = Emission(rts.receiver, rts.source, rate, bits, row, fade_db, rts.start)
+            exchange.judged.append(medium.judgement(cts, rts.source))
+            if exchange.judged[1][0] is None:
                 exchange.judged.clear()
+                exchange.after_cts = True
+                rts.rate_mbps = self.timing.rate_mbps
+                rts.bits = 8 * (self.timing.mac_header_bytes + exchange.frame.msdu_bytes)
                 return True
         exchange.undisturbed = False
         return False
 
-    def _begin(self, station: Station, fade_db: float | None, now: int) -> Emission:
-        emission = self.medium.begin(station.index, fade_db)
+    def _begin(
+        self,
+        station: Station,
+        receiver: StationIndex,
+        rate_mbps: float,
+        size_bytes: int,
+        fade_db: float | None,
+        now: int,
+    ) -> Emission:
+        bits = 8 * size_bytes
+        emission = self.medium.begin(station.index, receiver, rate_mbps, bits, fade_db, now)
         self._contention.on_busy(emission, now)
         return emission
 
-    def _end(self, emission: Emission, now: int, responder: StationIndex = EVERYONE) -> None:
-        """An emission ends. responder: who transmits the next frame of the exchange after a SIFS."""
-        self.medium.end(emission)
+    def _end(self, emission: Emission, now: int) -> None:
+        """An emission ends; `_leave_idle` must follow, when its addressee has judged it."""
+        errors = self.medium.end(emission, now)
+        if errors:
+            self._contention.on_errors([self._stations[index] for index in errors], now)
+        self._contention.on_frame_end(emission, now)
+
+    def _leave_idle(self, emission: Emission, now: int, responder: StationIndex = EVERYONE) -> None:
+        """The medium is idle after an emission. responder: who transmits next, after a SIFS."""
         if responder == EVERYONE:
             self._contention.on_idle(now)
         else:
             self._contention.on_idle(now, self.medium.propagation.mean_snr_row(responder))
+        if self._listening:
+            for exchange in self._listening.pop(emission, ()):
+                self._on_timeout(exchange, now)
 
     def _on_broadcast_end(self, exchange: Exchange, now: int) -> None:
         sender = exchange.sender
         self._end(exchange.emission, now)
+        self._leave_idle(exchange.emission, now)
         if not sender.gone:
+            self._retries.on_success(sender, is_broadcast=True)
             frame = self._finish(sender, now)
             self._listener.on_broadcast_done(sender.index, frame, exchange.emission, now)
             self._serve_next(sender, now)
 
-    def _is_received(self, exchange: Exchange, at: Station, rate_mbps: float, size_bytes: int) -> bool:
-        """Judge the current frame at one end of the exchange; the cause of a loss is kept."""
+    def _is_received(self, exchange: Exchange, at: Station) -> bool:
+        """Judge the frame that has ended at one end of the exchange; the cause of a loss is kept."""
         frame = exchange.frame
         if exchange.sender.gone or exchange.receiver.gone:
             frame.cause = DeliveryStatus.RECEIVER_GONE
         elif exchange.judged:
             frame.cause, frame.sinr_db = exchange.judged.pop(0)
         else:
-            judged = self.medium.receive(exchange.emission, at.index, rate_mbps, 8 * size_bytes)
-            frame.cause, frame.sinr_db = judged
+            frame.cause, frame.sinr_db = self.medium.judgement(exchange.emission, at.index)
         return frame.cause is None
 
     def _reserve(self, exchange: Exchange, now: int, frames: int, airtime: int) -> Reservation:
         """The duration field: so many frames of so much airtime are still to come in this exchange."""
         until = now + frames * (self.timing.sifs + exchange.delay) + airtime
-        ends = exchange.sender.index, exchange.receiver.index
-        return self.medium.reserve(exchange.emission, *ends, until, now)
+        return self.medium.nav.reserve(exchange.emission, until, now)
 
     def _on_rts_end(self, exchange: Exchange, now: int) -> None:
+        """A bystander of an RTS resets its NAV unless another frame follows (9.2.5.4)."""
         timing, receiver = self.timing, exchange.receiver
-        data = timing.data(exchange.frame.msdu_bytes)
-        received = self._is_received(exchange, receiver, timing.basic_rate_mbps, RTS_BYTES)
-        if received and self.medium.reserved_until(receiver.index, now) > now:
+        self._end(exchange.emission, now)
+        received = self._is_received(exchange, receiver)
+        if received and self.medium.nav.until(receiver.index, now) > now:
             exchange.frame.cause = DeliveryStatus.RECEIVER_BUSY
             received = False
+        data = timing.data(exchange.frame.msdu_bytes)
         reservation = self._reserve(exchange, now, 3, timing.cts + data + timing.ack)
+        self.medium.nav.watch(reservation)
+        nav_timeout = 2 * timing.sifs + timing.cts + 2 * timing.slot
+        if self._rules.as_ns3:
+            nav_timeout += timing.preamble
+        self._at(now + nav_timeout, self._on_nav_timeout, reservation)
         if received:
             self._at(now + timing.sifs, self._send_cts, exchange)
-            self._end(exchange.emission, now, receiver.index)
+            self._leave_idle(exchange.emission, now, receiver.index)
             return
-        self._end(exchange.emission, now)
-        self._at(now - exchange.delay + timing.response_timeout, self._on_timeout, exchange)
-        nav_reset = 2 * timing.sifs + timing.cts + 2 * timing.slot
-        self._at(now + nav_reset, self._on_nav_reset, reservation)
+        self._leave_idle(exchange.emission, now)
+        self._await(exchange, now - exchange.delay + timing.response_timeout)
 
-    def _on_nav_reset(self, reservation: Reservation, now: int) -> None:
-        self.medium.reset_nav(reservation)
+    def _on_nav_timeout(self, reservation: Reservation, now: int) -> None:
+        self.medium.nav.reset(reservation, now)
         self._contention.on_nav_reset(now)
 
     def _send_cts(self, exchange: Exchange, now: int) -> None:
-        if self._continue(exchange, exchange.receiver, now):
-            self._at(now + self.timing.cts + exchange.delay, self._on_cts_end, exchange)
+        timing = self.timing
+        if self._continue(exchange, exchange.receiver, timing.basic_rate_mbps, ACK_BYTES, now):
+            self._at(now + timing.cts + exchange.delay, self._on_cts_end, exchange)
 
     def _on_cts_end(self, exchange: Exchange, now: int) -> None:
         timing, sender = self.timing, exchange.sender
-        received = self._is_received(exchange, sender, timing.basic_rate_mbps, ACK_BYTES)
+        self._end(exchange.emission, now)
+        received = self._is_received(exchange, sender)
         self._reserve(exchange, now, 2, timing.data(exchange.frame.msdu_bytes) + timing.ack)
         if received:
+            exchange.after_cts = True
+            self._retries.on_cts(exchange.frame)
             self._at(now + timing.sifs, self._send_data, exchange)
-            self._end(exchange.emission, now, sender.index)
+            self._leave_idle(exchange.emission, now, sender.index)
             return
-        self._end(exchange.emission, now)
+        self._leave_idle(exchange.emission, now)
         rts_end = now - timing.cts - timing.sifs - 2 * exchange.delay
-        self._at(max(now, rts_end + timing.response_timeout), self._on_timeout, exchange)
+        self._await(exchange, max(now, rts_end + timing.response_timeout))
 
     def _send_data(self, exchange: Exchange, now: int) -> None:
-        if self._continue(exchange, exchange.sender, now):
-            end = now + self.timing.data(exchange.frame.msdu_bytes) + exchange.delay
-            self._at(end, self._on_data_end, exchange)
+        timing, msdu_bytes = self.timing, exchange.frame.msdu_bytes
+        size = timing.mac_header_bytes + msdu_bytes
+        if self._continue(exchange, exchange.sender, timing.rate_mbps, size, now):
+            self._at(now + timing.data(msdu_bytes) + exchange.delay, self._on_data_end, exchange)
 
     def _on_data_end(self, exchange: Exchange, now: int) -> None:
         timing, receiver, frame = self.timing, exchange.receiver, exchange.frame
-        size_bytes = timing.mac_header_bytes + frame.msdu_bytes
-        received = self._is_received(exchange, receiver, timing.rate_mbps, size_bytes)
+        self._end(exchange.emission, now)
+        received = self._is_received(exchange, receiver)
         if not exchange.undisturbed or not received:
             self._reserve(exchange, now, 1, timing.ack)
         if not received:
-            self._end(exchange.emission, now)
-            self._at(now - exchange.delay + timing.response_timeout, self._on_timeout, exchange)
+            self._leave_idle(exchange.emission, now)
+            self._await(exchange, now - exchange.delay + timing.response_timeout)
             return
-        if exchange.undisturbed:
-            self.medium.end(exchange.emission)
-        else:
+        if not exchange.undisturbed:
             self._at(now + timing.sifs, self._send_ack, exchange)
-            self._end(exchange.emission, now, receiver.index)
+            self._leave_idle(exchange.emission, now, receiver.index)
         if not frame.received:
             frame.received = True
             self._listener.on_received(receiver.index, exchange.sender.index, frame, now)
         if exchange.undisturbed:
-            exchange.emission = self._begin(receiver, exchange.fade_db, now)
+            rate, sender = timing.basic_rate_mbps, exchange.sender.index
+            ack = self._begin(receiver, sender, rate, ACK_BYTES, exchange.fade_db, now)
+            exchange.emission = ack
             self._at(now + timing.sifs + timing.ack + exchange.delay, self._on_ack_end, exchange)
 
     def _send_ack(self, exchange: Exchange, now: int) -> None:
-        if self._continue(exchange, exchange.receiver, now):
-            self._at(now + self.timing.ack + exchange.delay, self._on_ack_end, exchange)
+        timing = self.timing
+        if self._continue(exchange, exchange.receiver, timing.basic_rate_mbps, ACK_BYTES, now):
+            self._at(now + timing.ack + exchange.delay, self._on_ack_end, exchange)
 
     def _on_ack_end(self, exchange: Exchange, now: int) -> None:
         timing, sender = self.timing, exchange.sender
-        received = self._is_received(exchange, sender, timing.basic_rate_mbps, ACK_BYTES)
         self._end(exchange.emission, now)
+        received = self._is_received(exchange, sender)
+        self._leave_idle(exchange.emission, now)
         if not received:
             data_end = now - timing.ack - timing.sifs - 2 * exchange.delay
-            self._at(max(now, data_end + timing.response_timeout), self._on_timeout, exchange)
+            self._await(exchange, max(now, data_end + timing.response_timeout))
         elif not sender.gone:
+            self._retries.on_success(sender, is_broadcast=False)
             frame = self._finish(sender, now)
             self._listener.on_acknowledged(sender.index, frame, now)
             self._serve_next(sender, now)
 
-    def _continue(self, exchange: Exchange, transmitter: Station, now: int) -> bool:
+    def _continue(
+        self, exchange: Exchange, transmitter: Station, rate_mbps: float, size_bytes: int, now: int
+    ) -> bool:
         """The next frame of an exchange, a SIFS after the last; False when its transmitter has left."""
         if transmitter.gone:
             exchange.frame.cause = DeliveryStatus.RECEIVER_GONE
-            self._at(now + self.timing.response_timeout, self._on_timeout, exchange)
+            self._await(exchange, now + self.timing.response_timeout)
             return False
-        exchange.emission = self._begin(transmitter, exchange.fade_db, now)
+        other = exchange.receiver if transmitter is exchange.sender else exchange.sender
+        fade_db = exchange.fade_db
+        exchange.emission = self._begin(transmitter, other.index, rate_mbps, size_bytes, fade_db, now)
         return True
 
+    def _await(self, exchange: Exchange, until: int) -> None:
+        """The response did not come, which its sender knows only when its timer expires."""
+        self._awaiting += 1
+        self._at(until, self._on_timeout, exchange)
+
     def _on_timeout(self, exchange: Exchange, now: int) -> None:
-        """No response: another attempt after a longer backoff, or the end of this frame."""
-        sender, frame = exchange.sender, exchange.frame
+        """No response: another attempt after a longer backoff, or the end of this frame.
+
+        A sender to which PHY-RXSTART was indicated waits for the end of that frame (9.2.5.7, 9.2.8).
+        """
+        sender, frame, medium = exchange.sender, exchange.frame, self.medium
+        if medium.emissions and not sender.gone:
+            heard = medium.receivers.receiving(sender.index, medium.emissions, now)
+            if heard is not None:
+                self._listening.setdefault(heard, []).append(exchange)
+                return
+        self._awaiting -= 1
         if sender.gone:
             return
-        if frame.attempts < self._retry_limit:
-            self._contention.join(sender, frame.attempts, now)
+        if not self._retries.on_failure(sender, frame, exchange.after_cts):
+            self._contention.join(sender, now)
             return
         self._finish(sender, now)
         self._listener.on_undeliverable(sender.index, frame, now)
@@ -329,7 +383,7 @@ class Dcf:
         frame = station.frame
         assert frame is not None
         station.frame = None
-        self._contention.join(station, 0, now)
+        self._contention.join(station, now)
         return frame
 
     def _serve_next(self, station: Station, now: int) -> None:

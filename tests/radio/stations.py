@@ -10,8 +10,10 @@ from radio_proxy.core.airtime import Timing, dsss
 from radio_proxy.core.contention import Frame
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.emission import Emission
 from radio_proxy.core.link_budget import LinkBudget, link_budget
-from radio_proxy.core.medium import Emission, Medium
+from radio_proxy.core.link_rules import link_rules
+from radio_proxy.core.medium import Medium
 from radio_proxy.core.propagation import Propagation
 
 
@@ -54,17 +56,9 @@ class Cell:
         ]
         propagation.update(tuple(presences), cuts, ())
         draws = Draws(generator(1, "radio"))
-        self.dcf = Dcf(
-            len(robots),
-            dsss(section),
-            Medium(propagation, draws),
-            draws,
-            self,
-            retry_limit=section.retry_limit,
-            queue_frames=section.queue_frames,
-            rts_threshold_bytes=section.rts_threshold_bytes,
-            fade_per_exchange=False,
-        )
+        rules = link_rules(section)
+        medium = Medium(propagation, draws, rules)
+        self.dcf = Dcf(len(robots), dsss(section), medium, draws, self, rules)
         self.arrived: list[tuple[int, int, Frame]] = []
         self.given_up: list[Frame] = []
 

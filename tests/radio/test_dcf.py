@@ -7,6 +7,7 @@ from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.addresses import EVERYONE
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.link_budget import link_budget
+from radio_proxy.core.link_rules import LinkRules
 from radio_proxy.core.saturation import Saturation, ring
 from tests.radio.stations import Cell
 
@@ -24,7 +25,7 @@ def test_shortcuts_change_nothing(stations: int, rts_cts: bool) -> None:
     tallies = []
     for take_shortcuts in (True, False):
         load, budget = ring(stations, 800, rts_cts), link_budget(STILL)
-        run = Saturation(load, dsss(STILL), budget, 7, 7, take_shortcuts=take_shortcuts)
+        run = Saturation(load, dsss(STILL), budget, 7, LinkRules(), take_shortcuts=take_shortcuts)
         tallies.append(run.run(3.0))
     assert tallies[0] == tallies[1]
     assert sum(tallies[0].delivered) > 300
