@@ -19,7 +19,8 @@ class RadioSection:
         carrier_sense_db: lowest SNR of a carrier that makes the medium busy.
     energy_detect_db: lowest power of everything received, over the noise floor, that makes the medium
         busy as well [dB]; None: only carriers do (CCA mode 2).
-    preamble_sinr_db: lowest SINR at which a preamble is detected among other frames [dB].
+    preamble_sinr_db: lowest SINR at which a preamble is detected among other frames [dB]; None: the
+        receive threshold.
     capture_db: a frame stronger by this takes over a receiver in the preamble of another [dB]; None:
         a receiver that is locked stays so.
     frequency_hz, antenna_gain_dbi (each end), system_loss_db, reference_distance d0 [m].
@@ -49,7 +50,7 @@ class RadioSection:
     receive_threshold_db: Annotated[float, Range(-50.0, 100.0)] | None = None
     carrier_sense_db: Annotated[float, Range(-50.0, 100.0)] | None = None
     energy_detect_db: Annotated[float, Range(-50.0, 100.0)] | None = None
-    preamble_sinr_db: Annotated[float, Range(0.0, 40.0)] = 4.0
+    preamble_sinr_db: Annotated[float, Range(0.0, 100.0)] | None = None
     capture_db: Annotated[float, Range(0.0, 100.0)] | None = None
     as_ns3: bool = False
     frequency_hz: Annotated[float, Range(1e6, 1e12)] = 2.4e9

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 from onehop.contracts.radio_section import RadioSection
+from radio_proxy.core.link_budget import link_budget
 
 SHORT_RETRY_LIMIT = 7
 LONG_RETRY_LIMIT = 4
@@ -29,7 +30,7 @@ class LinkRules:
     rts_threshold_bytes: int = 0
     queue_frames: int = 64
     fade_per_exchange: bool = False
-    preamble_sinr_db: float = 4.0
+    preamble_sinr_db: float | None = None
     capture_db: float | None = None
     energy_detect_db: float | None = None
     as_ns3: bool = False
@@ -44,7 +45,7 @@ def link_rules(section: RadioSection) -> LinkRules:
         fade_per_exchange=section.fading == "exchange",
         preamble_sinr_db=section.preamble_sinr_db,
         capture_db=section.capture_db,
-        energy_detect_db=section.energy_detect_db,
+        energy_detect_db=_energy_detect_db(section),
         as_ns3=section.as_ns3,
     )
 
@@ -60,3 +61,10 @@ def _retry_limits(section: RadioSection) -> RetryLimits:
         SHORT_RETRY_LIMIT if short is None else short,
         LONG_RETRY_LIMIT if long is None else long,
     )
+
+
+def _energy_detect_db(section: RadioSection) -> float | None:
+    """In ns-3 the sum of all frames is held against the one threshold."""
+    if section.energy_detect_db is None and section.as_ns3:
+        return link_budget(section).carrier_sense_db
+    return section.energy_detect_db

@@ -50,7 +50,9 @@ class Receivers:
         self._sigma_db = budget.shadowing_db
         self._threshold_db = budget.receive_threshold_db
         self._threshold = elementary.power_of_ten(budget.receive_threshold_db / 10.0)
-        detectable_db = min(rules.preamble_sinr_db, budget.receive_threshold_db)
+        detectable_db = rules.preamble_sinr_db
+        if detectable_db is None:
+            detectable_db = budget.receive_threshold_db
         self._detectable = elementary.power_of_ten(detectable_db / 10.0)
         captures = rules.capture_db is not None
         self._capture = elementary.power_of_ten((rules.capture_db or 0.0) / 10.0) if captures else None
