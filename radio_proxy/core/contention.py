@@ -9,7 +9,7 @@ from collections import deque
 from dataclasses import dataclass, field
 
 from onehop.contracts.messages import DeliveryStatus
-from radio_proxy.core.addresses import StationIndex
+from radio_proxy.core.addresses import EVERYONE, StationIndex
 from radio_proxy.core.airtime import Timing
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.emission import Emission
@@ -67,7 +67,10 @@ class Station:
 
 
 class Contention:
-    """The stations that wait for the medium; next_station transmits at next_access unless it freezes."""
+    """The stations that wait for the medium; next_station transmits at next_access unless it freezes.
+
+    minds_errors: somebody waits, or is to wait, for EIFS.
+    """
 
     def __init__(self, timing: Timing, medium: Medium, draws: Draws, rules: LinkRules) -> None:
         self.next_access = NEVER
@@ -79,7 +82,8 @@ class Contention:
         self._difs, self._slot = timing.difs, timing.slot
         self._waiting: list[Station] = []
         self._after_error = timing.sifs + timing.ack
-        self._errs_when_idle = not rules.as_ns3
+        self._errs_at_end = rules.as_ns3
+        self.minds_errors = False
         self._erred: list[Station] = []
         self._deferring: list[Station] = []
         self._eifs_latest = 0
@@ -136,36 +140,31 @@ class Contention:
                 row[station.index] >= sense_db
                 or (medium.detects_energy and medium.is_busy(station.index))
             ):
-                self._freeze(station, now, emission.source == station.index)
+                self._freeze(station, now, emission.source)
             elif access < next_access:
                 next_access, next_station = access, station
         self.next_access, self.next_station = next_access, next_station
 
-    def on_errors(self, stations: list[Station], now: int) -> None:
-        """Stations received a frame with errors: EIFS instead of DIFS (802.11-1999, 9.2.3.4).
+    def on_frame_end(self, emission: Emission, erring: list[Station], now: int) -> None:
+        """A frame has ended, which some received with errors: EIFS for them (802.11-1999, 9.2.3.4).
 
-        It begins when the medium is idle after the frame; in ns-3 at the end of the frame.
+        It begins when the medium is idle after the frame, in ns-3 at its end; to receive another frame
+        without error ends it.
         """
-        self._erred += stations
-        if not self._errs_when_idle:
-            self._begin_eifs(self._erred, now)
-
-    def on_frame_end(self, emission: Emission, now: int) -> None:
-        """A frame has ended: error-free reception ends an EIFS (802.11-1999, 9.2.3.4)."""
-        if self._deferring:
-            deferring = [s for s in self._deferring if s.eifs_end > now]
-            for station in deferring:
-                if self._medium.receivers.has_received(emission, station.index):
+        received = self._medium.receivers.has_received
+        for stations in (self._erred, self._deferring):
+            for station in stations:
+                if station.eifs_end > now and received(emission, station.index):
                     station.eifs_end = now
-            self._deferring = [s for s in deferring if s.eifs_end > now]
-        if self._erred:
-            self._begin_eifs([s for s in self._erred if not self._medium.is_busy(s.index)], now)
-
-    def _begin_eifs(self, stations: list[Station], now: int) -> None:
-        for station in stations:
+        erred = [s for s in self._erred if s.eifs_end > now] + erring
+        for station in erring:
+            station.eifs_end = NEVER
+        idle = [s for s in erred if self._errs_at_end or not self._medium.is_busy(s.index)]
+        for station in idle:
             station.eifs_end = self._eifs_latest = now + self._after_error
-        self._deferring += stations
-        self._erred = [s for s in self._erred if s not in stations]
+        self._erred = [s for s in erred if s.eifs_end == NEVER]
+        self._deferring = [s for s in self._deferring if s.eifs_end > now] + idle
+        self.minds_errors = bool(self._erred or self._deferring)
 
     def reassess(self, now: int) -> None:
         """Who moves or is jammed may find the medium busy or idle although no frame began or ended."""
@@ -174,7 +173,7 @@ class Contention:
             if station.access == NEVER and not busy:
                 self._resume(station, now)
             elif station.access != NEVER and busy:
-                self._freeze(station, now, own=False)
+                self._freeze(station, now, EVERYONE)
         self.find_next()
 
     def on_idle(self, now: int, response: list[float] | None = None) -> None:
@@ -184,10 +183,11 @@ class Contention:
         senses it does not even start, for SIFS is shorter than DIFS.
         """
         medium, sense_db = self._medium, self._sense_db
-        deferred = medium.nav.latest > now or self._eifs_latest > now or medium.detects_energy
-        if response is None and not medium.emissions and not deferred:
-            self._resume_all(now)
-            return
+        if response is None and not medium.emissions:
+            deferring = medium.nav.latest > now or self._eifs_latest > now
+            if not deferring and not medium.detects_energy:
+                self._resume_all(now)
+                return
         for station in self._waiting:
             if station.access != NEVER or (response is not None and response[station.index] >= sense_db):
                 continue
@@ -227,7 +227,7 @@ class Contention:
         self.next_access, self.next_station = next_access, next_station
 
     def _resume(self, station: Station, now: int) -> None:
-        start = max(now, station.eifs_end)
+        start = now if station.eifs_end <= now else station.eifs_end
         nav = self._medium.nav
         if nav.latest > start:
             start = nav.until(station.index, start)
@@ -236,11 +236,11 @@ class Contention:
         if access < self.next_access:
             self.next_access, self.next_station = access, station
 
-    def _freeze(self, station: Station, now: int, own: bool) -> None:
+    def _freeze(self, station: Station, now: int, source: StationIndex) -> None:
         elapsed = now - station.idle_start - self._difs
         if elapsed > 0:
             station.slots -= elapsed // self._slot
-        if station.fresh and not own:
+        if station.fresh and source != station.index:
             station.fresh = False
             station.slots = self._draws.slots(self._timing.window(station.failures))
         station.access = NEVER

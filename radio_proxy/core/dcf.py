@@ -5,10 +5,10 @@ neighbours pass on, may collide and are then lost. That is the standard's way, a
 on any single one: beacons come every period, requests are jittered and repeated.
 
 An undisturbed exchange is taken in three events instead of eight: every station senses both of its ends,
-no other emission is in progress, nobody is about to transmit or awaits a response, and it ends before the
-horizon. Its frames are judged as ever; only the gaps of a SIFS, in which nobody may transmit, are not
-played. With a receive threshold so low that bystanders may receive its frames with errors (EIFS) all is
-played.
+no other emission is in progress, nobody is about to transmit or awaits a response for long, and it ends
+before the horizon. Its frames are judged as ever; only the gaps of a SIFS, in which nobody may transmit,
+are not played. With a receive threshold so low that bystanders may receive its frames with errors (EIFS)
+all is played.
 """
 
 from dataclasses import dataclass, field
@@ -25,6 +25,7 @@ from radio_proxy.core.event_queue import EventQueue
 from radio_proxy.core.link_rules import LinkRules
 from radio_proxy.core.medium import Medium
 from radio_proxy.core.nav import Reservation
+from radio_proxy.core.reception import PLCP
 from radio_proxy.core.retries import Retries
 
 
@@ -76,12 +77,13 @@ class Dcf:
     ) -> None:
         self.timing = timing
         self.medium = medium
+        self._judge = medium.receivers.judgement
         self._listener = listener
         self._rules = rules
         self._retries = Retries(rules)
         self._take_shortcuts = take_shortcuts and medium.receivers.locks_are_certain
         self._stations = [Station(StationIndex(i)) for i in range(count)]
-        self._awaiting = 0
+        self._latest_timeout = 0
         self._listening: dict[Emission, list[Exchange]] = {}
         self._contention = Contention(timing, medium, draws, rules)
         self.events = EventQueue(self._contention, self._on_access)
@@ -131,7 +133,7 @@ class Dcf:
         frame.attempts += 1
         timing, rules = self.timing, self._rules
         fade_db = self.medium.receivers.fade_db() if rules.fade_per_exchange else None
-        alone = not self.medium.emissions and not self._awaiting
+        alone = not self.medium.emissions and self._latest_timeout < now + PLCP
         rts_cts = frame.receiver != EVERYONE and frame.msdu_bytes > rules.rts_threshold_bytes
         size = RTS_BYTES if rts_cts else timing.mac_header_bytes + frame.msdu_bytes
         rate = timing.basic_rate_mbps if rts_cts or frame.receiver == EVERYONE else timing.rate_mbps
@@ -173,13 +175,13 @@ class Dcf:
 
     def _is_cleared(self, exchange: Exchange) -> bool:
         """Judge RTS and CTS of an undisturbed exchange in advance; if one fails, they are played out."""
-        medium, rts = self.medium, exchange.emission
-        exchange.judged.append(medium.judgement(rts, rts.receiver))
+        rts = exchange.emission
+        exchange.judged.append(self._judge(rts, rts.receiver))
         if exchange.judged[0][0] is None:
-            row = medium.propagation.mean_snr_row(rts.receiver)
+            row = self.medium.propagation.mean_snr_row(rts.receiver)
             rate, bits, fade_db = self.timing.basic_rate_mbps, 8 * ACK_BYTES, exchange.fade_db
             cts = Emission(rts.receiver, rts.source, rate, bits, row, fade_db, rts.start)
-            exchange.judged.append(medium.judgement(cts, rts.source))
+            exchange.judged.append(self._judge(cts, rts.source))
             if exchange.judged[1][0] is None:
                 exchange.judged.clear()
                 exchange.after_cts = True
@@ -206,9 +208,9 @@ class Dcf:
     def _end(self, emission: Emission, now: int) -> None:
         """An emission ends; `_leave_idle` must follow, when its addressee has judged it."""
         errors = self.medium.end(emission, now)
-        if errors:
-            self._contention.on_errors([self._stations[index] for index in errors], now)
-        self._contention.on_frame_end(emission, now)
+        if errors or self._contention.minds_errors:
+            erring = [self._stations[index] for index in errors]
+            self._contention.on_frame_end(emission, erring, now)
 
     def _leave_idle(self, emission: Emission, now: int, responder: StationIndex = EVERYONE) -> None:
         """The medium is idle after an emission. responder: who transmits next, after a SIFS."""
@@ -238,7 +240,7 @@ class Dcf:
         elif exchange.judged:
             frame.cause, frame.sinr_db = exchange.judged.pop(0)
         else:
-            frame.cause, frame.sinr_db = self.medium.judgement(exchange.emission, at.index)
+            frame.cause, frame.sinr_db = self._judge(exchange.emission, at.index)
         return frame.cause is None
 
     def _reserve(self, exchange: Exchange, now: int, frames: int, airtime: int) -> Reservation:
@@ -354,7 +356,7 @@ class Dcf:
 
     def _await(self, exchange: Exchange, until: int) -> None:
         """The response did not come, which its sender knows only when its timer expires."""
-        self._awaiting += 1
+        self._latest_timeout = max(self._latest_timeout, until)
         self._at(until, self._on_timeout, exchange)
 
     def _on_timeout(self, exchange: Exchange, now: int) -> None:
@@ -368,7 +370,6 @@ class Dcf:
             if heard is not None:
                 self._listening.setdefault(heard, []).append(exchange)
                 return
-        self._awaiting -= 1
         if sender.gone:
             return
         if not self._retries.on_failure(sender, frame, exchange.after_cts):

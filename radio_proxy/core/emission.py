@@ -14,15 +14,15 @@ Judgement = tuple[DeliveryStatus | None, float]
 class Reception:
     """A frame at its receivers; kept only of frames that overlap others, or that somebody overheard.
 
-    overlaps: every other emission that was in progress meanwhile. powers: received power at a station,
-    over the noise floor, fading included. deaf: stations that could not receive it, because they
+    overlaps: every other emission that was in progress meanwhile. levels_db: received power at a
+    station, over the noise floor, fading included. deaf: stations that could not receive it, because they
     transmitted or were locked on another frame. locked: stations that locked on it; None until the time
     of preamble detection is over. headers: whether a locked station could read the PLCP header; judged:
     how the frame ended.
     """
 
     overlaps: list["Emission"] = field(default_factory=list)
-    powers: dict[StationIndex, float] = field(default_factory=dict)
+    levels_db: dict[StationIndex, float] = field(default_factory=dict)
     deaf: set[StationIndex] = field(default_factory=set)
     locked: list[StationIndex] | None = None
     headers: dict[StationIndex, bool] = field(default_factory=dict)

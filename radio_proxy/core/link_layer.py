@@ -142,7 +142,7 @@ class LinkLayer:
         for robot, router in self._routers.items():
             if robot == source:
                 continue
-            cause, sinr_db = self._medium.judgement(emission, self._index[robot])
+            cause, sinr_db = self._medium.receivers.judgement(emission, self._index[robot])
             if isinstance(packet, DataPacket):
                 packet.message.sinr_db = sinr_db
                 packet.message.bit_error_rate = bit_error_rate(rate_mbps, sinr_db)

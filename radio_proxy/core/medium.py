@@ -7,7 +7,7 @@ cost more than the rest of the model.
 from onehop.contracts import elementary
 from radio_proxy.core.addresses import StationIndex
 from radio_proxy.core.draws import Draws
-from radio_proxy.core.emission import Emission, Judgement
+from radio_proxy.core.emission import Emission
 from radio_proxy.core.link_rules import LinkRules
 from radio_proxy.core.nav import Reservations
 from radio_proxy.core.propagation import Propagation
@@ -15,7 +15,10 @@ from radio_proxy.core.reception import Receivers
 
 
 class Medium:
-    """Emissions in progress. receivers: who is locked on which; nav: who reserved the medium."""
+    """Emissions in progress. receivers: who is locked on which; nav: who reserved the medium.
+
+    detects_energy: energy alone makes the medium busy.
+    """
 
     def __init__(self, propagation: Propagation, draws: Draws, rules: LinkRules) -> None:
         self.propagation = propagation
@@ -23,15 +26,8 @@ class Medium:
         self.receivers = Receivers(propagation, draws, rules)
         self.nav = Reservations(self.receivers)
         self._sense_db = propagation.budget.carrier_sense_db
-        detects = rules.energy_detect_db is not None
-        self._energy = (
-            elementary.power_of_ten((rules.energy_detect_db or 0.0) / 10.0) if detects else None
-        )
-
-    @property
-    def detects_energy(self) -> bool:
-        """Whether energy alone makes the medium busy."""
-        return self._energy is not None
+        self.detects_energy = rules.energy_detect_db is not None
+        self._energy = elementary.power_of_ten((rules.energy_detect_db or 0.0) / 10.0)
 
     def begin(
         self,
@@ -48,7 +44,8 @@ class Medium:
         if self.emissions:
             self.receivers.overlap(emission, self.emissions)
         self.emissions.append(emission)
-        self.nav.on_begin(emission)
+        if self.nav.watching:
+            self.nav.on_begin(emission)
         return emission
 
     def end(self, emission: Emission, now: int) -> list[StationIndex]:
@@ -60,16 +57,12 @@ class Medium:
         self.emissions.remove(emission)
         return errors
 
-    def judgement(self, emission: Emission, station: StationIndex) -> Judgement:
-        """What kept a station from receiving a frame that has ended, and its lowest SINR [dB]."""
-        return self.receivers.judgement(emission, station)
-
     def is_busy(self, station: StationIndex) -> bool:
-        """Physical carrier sense (802.11-1999, 15.4.8.4): a DSSS signal, and energy if it is detected."""
+        """Physical carrier sense (802.11-1999, 15.4.8.4): carriers, and energy if it is detected."""
         for emission in self.emissions:
             if emission.row[station] >= self._sense_db:
                 return True
-        return self._energy is not None and self._received_energy(station) >= self._energy
+        return self.detects_energy and self._received_energy(station) >= self._energy
 
     def _received_energy(self, station: StationIndex) -> float:
         """Mean power at a station of all frames and jams over the noise floor."""

@@ -26,13 +26,16 @@ class Reservation:
 
 
 class Reservations:
-    """The NAV of every station. latest: no reservation ends later [ns]."""
+    """The NAV of every station. latest: no reservation ends later [ns].
+
+    watching: reservations of an RTS for which it matters what follows.
+    """
 
     def __init__(self, receivers: Receivers) -> None:
         self.latest = 0
         self._receivers = receivers
         self._reservations: list[Reservation] = []
-        self._watching: list[Reservation] = []
+        self.watching: list[Reservation] = []
 
     def reserve(self, emission: Emission, until: int, now: int) -> Reservation:
         """Set the NAV of every station that received this frame, but for its addressee."""
@@ -44,16 +47,16 @@ class Reservations:
 
     def watch(self, reservation: Reservation) -> None:
         """Note from now on which frames follow an RTS."""
-        self._watching.append(reservation)
+        self.watching.append(reservation)
 
     def on_begin(self, emission: Emission) -> None:
         """A frame begins."""
-        for reservation in self._watching:
+        for reservation in self.watching:
             reservation.later.append(emission)
 
     def reset(self, reservation: Reservation, now: int) -> None:
         """Reset the NAV of those to whom PHY-RXSTART has not been indicated since an RTS."""
-        self._watching.remove(reservation)
+        self.watching.remove(reservation)
         reservation.void_from = now
 
     def until(self, station: StationIndex, now: int) -> int:

@@ -1,4 +1,4 @@
-"""How a station receives: preamble, lock, header, frame (802.11-1999, 15.2.6 and 15.4.8; thesis eq. 3.23).
+"""How a station receives: preamble, lock, header, frame (802.11-1999, 15.2.7; thesis eq. 3.23).
 
 A receiver that is free locks on a frame whose signal reaches the receive threshold above noise and jams,
 and whose SINR is enough when its preamble has been detected. Locked, or while it transmits itself, it
@@ -49,13 +49,9 @@ class Receivers:
         self._draws = draws
         self._sigma_db = budget.shadowing_db
         self._threshold_db = budget.receive_threshold_db
-        self._threshold = elementary.power_of_ten(budget.receive_threshold_db / 10.0)
         detectable_db = rules.preamble_sinr_db
-        if detectable_db is None:
-            detectable_db = budget.receive_threshold_db
-        self._detectable = elementary.power_of_ten(detectable_db / 10.0)
-        captures = rules.capture_db is not None
-        self._capture = elementary.power_of_ten((rules.capture_db or 0.0) / 10.0) if captures else None
+        self._detectable_db = self._threshold_db if detectable_db is None else detectable_db
+        self._capture_db = rules.capture_db
         self._locked_on: dict[StationIndex, Emission] = {}
         self.locks_are_certain = self._threshold_db >= CERTAIN_SINR_DB
 
@@ -110,11 +106,32 @@ class Receivers:
     # What became of it.
 
     def judgement(self, emission: Emission, station: StationIndex) -> Judgement:
-        """What kept a station from receiving a frame that has ended."""
+        """What kept a station from receiving a frame that has ended, and its lowest SINR [dB].
+
+        A frame that nobody looked at yet overlaps no other, and a receiver was free for it.
+        """
+        mean_db = emission.row[station]
+        if mean_db <= SILENT_DB:
+            return DeliveryStatus.BELOW_THRESHOLD, SILENT_DB
         reception = emission.reception
-        if reception is not None and station in reception.judged:
+        if reception is None:
+            fade_db = emission.fade_db
+            if fade_db is None:
+                fade_db = self._sigma_db * self._draws.normal() if self._sigma_db else 0.0
+            snr_db = mean_db + fade_db - self._propagation.noise_rise_db[station]
+        elif station in reception.judged:
             return reception.judged[station]
-        return self._judge_alone(emission, station)
+        else:
+            rise_db = self._propagation.noise_rise_db[station]
+            snr_db = self._level_db(emission, station) - rise_db
+        if snr_db < self._threshold_db:
+            return DeliveryStatus.BELOW_THRESHOLD, snr_db
+        if snr_db >= CERTAIN_SINR_DB:
+            return None, snr_db
+        success = frame_success(HEADER_RATE_MBPS, snr_db, HEADER_BITS)
+        success *= frame_success(emission.rate_mbps, snr_db, emission.bits)
+        lost = self._draws.uniform() >= success
+        return (DeliveryStatus.BIT_ERRORS if lost else None), snr_db
 
     def has_received(self, emission: Emission, station: StationIndex) -> bool:
         """Whether a bystander received a frame that has ended."""
@@ -122,7 +139,7 @@ class Receivers:
         if station not in reception.judged:
             if reception.locked is not None:
                 return False
-            reception.judged[station] = self._judge_alone(emission, station)
+            reception.judged[station] = self.judgement(emission, station)
         return reception.judged[station][0] is None
 
     def has_started(self, emission: Emission, station: StationIndex, now: int) -> bool:
@@ -133,7 +150,7 @@ class Receivers:
             self.detect([emission], now)
         reception = _reception(emission)
         if reception.locked is None:
-            return self._power(emission, station) >= self._threshold * self._noise(station)
+            return self._is_strong(emission, station)
         return station in reception.locked and self._reads_header(emission, station)
 
     def receiving(self, station: StationIndex, in_progress: list[Emission], now: int) -> Emission | None:
@@ -148,22 +165,29 @@ class Receivers:
     def _lock(self, emission: Emission) -> None:
         detected = emission.start + DETECTION
         reception = _reception(emission)
-        reception.locked = []
+        locked = reception.locked = []
         rivals = [other for other in reception.overlaps if other.start < detected < other.end]
-        for index in range(len(emission.row)):
+        source, deaf, locked_on = emission.source, reception.deaf, self._locked_on
+        for index, mean_db in enumerate(emission.row):
             station = StationIndex(index)
-            if emission.row[index] <= SILENT_DB or station == emission.source:
+            if mean_db <= SILENT_DB or station == source or station in deaf or station in locked_on:
                 continue
-            if station in reception.deaf or station in self._locked_on:
-                continue
-            signal, noise = self._power(emission, station), self._noise(station)
-            if signal < self._threshold * noise:
-                continue
-            for rival in rivals:
-                noise += self._power(rival, station)
-            if signal >= self._detectable * noise:
-                reception.locked.append(station)
-                self._locked_on[station] = emission
+            if self._is_strong(emission, station) and self._is_detected(emission, station, rivals):
+                locked.append(station)
+                locked_on[station] = emission
+
+    def _is_strong(self, emission: Emission, station: StationIndex) -> bool:
+        """Whether the signal alone reaches the receive threshold."""
+        rise_db = self._propagation.noise_rise_db[station]
+        return self._level_db(emission, station) - rise_db >= self._threshold_db
+
+    def _is_detected(self, emission: Emission, station: StationIndex, rivals: list[Emission]) -> bool:
+        """Whether a preamble is detected among rivals; none of them alone may be too strong, nor all."""
+        least_db = self._level_db(emission, station) - self._detectable_db
+        for rival in rivals:
+            if self._level_db(rival, station) > least_db:
+                return False
+        return not rivals or self._noise_db(station, rivals) <= least_db
 
     def _release(self, station: StationIndex) -> None:
         """A station gives up the frame that it is locked on."""
@@ -175,11 +199,10 @@ class Receivers:
 
     def _is_captured(self, station: StationIndex, held: Emission, emission: Emission) -> bool:
         """Whether a new frame takes over a receiver that still is in the preamble of another."""
-        if self._capture is None or emission.start >= held.start + SYNC:
+        if self._capture_db is None or emission.start >= held.start + SYNC:
             return False
-        if emission.row[station] <= SILENT_DB:
-            return False
-        return self._power(emission, station) >= self._capture * self._power(held, station)
+        above_db = self._level_db(emission, station) - self._level_db(held, station)
+        return above_db >= self._capture_db
 
     def _is_held(self, station: StationIndex, held: Emission, now: int) -> bool:
         """Whether a receiver still is locked on a frame: not, if it could not read its PLCP header."""
@@ -188,49 +211,48 @@ class Receivers:
         del self._locked_on[station]
         return False
 
-    # Powers and stretches.
+    # Levels and stretches.
 
-    def _noise(self, station: StationIndex) -> float:
-        """Noise at a station over the floor, by jams."""
-        rise_db = self._propagation.noise_rise_db[station]
-        return elementary.power_of_ten(rise_db / 10.0) if rise_db else 1.0
+    def _level_db(self, emission: Emission, station: StationIndex) -> float:
+        """Power of a frame at a station over the noise floor: mean and fading, drawn once."""
+        mean_db = emission.row[station]
+        if emission.fade_db is not None:
+            return mean_db + emission.fade_db
+        if not self._sigma_db or mean_db <= SILENT_DB:
+            return mean_db
+        levels_db = (emission.reception or _reception(emission)).levels_db
+        level_db = levels_db.get(station)
+        if level_db is None:
+            level_db = levels_db[station] = mean_db + self.fade_db()
+        return level_db
 
-    def _power(self, emission: Emission, station: StationIndex) -> float:
-        """Power of a frame at a station over the noise floor: mean and fading, the same at every look."""
-        powers = _reception(emission).powers
-        power = powers.get(station)
-        if power is None:
-            mean_db = emission.row[station]
-            if mean_db <= SILENT_DB:
-                return 0.0
-            fade_db = emission.fade_db if emission.fade_db is not None else self.fade_db()
-            power = powers[station] = elementary.power_of_ten((mean_db + fade_db) / 10.0)
-        return power
+    def _noise_db(self, station: StationIndex, others: list[Emission]) -> float:
+        """Noise at a station over the floor, by jams and other frames."""
+        noise = elementary.power_of_ten(self._propagation.noise_rise_db[station] / 10.0)
+        for other in others:
+            noise += elementary.power_of_ten(self._level_db(other, station) / 10.0)
+        return 10.0 * elementary.log10(noise)
 
     def _stretches(
         self, emission: Emission, station: StationIndex, start: int, end: int
     ) -> Iterator[tuple[int, float]]:
-        """Parts of a frame during which the same others overlap it: length [ns] and SINR."""
+        """Parts of a frame during which the same others overlap it: length [ns] and SINR [dB]."""
         overlaps = _reception(emission).overlaps
         edges = {start, end}
         for other in overlaps:
             edges.update(time for time in (other.start, other.end) if start < time < end)
-        ordered = sorted(edges)
-        signal, floor = self._power(emission, station), self._noise(station)
-        for begin, stop in pairwise(ordered):
-            noise = floor
-            for other in overlaps:
-                if other.start <= begin and other.end >= stop:
-                    noise += self._power(other, station)
-            yield stop - begin, signal / noise
+        level_db = self._level_db(emission, station)
+        for begin, stop in pairwise(sorted(edges)):
+            others = [o for o in overlaps if o.start <= begin and o.end >= stop]
+            yield stop - begin, level_db - self._noise_db(station, others)
 
     def _reads_header(self, emission: Emission, station: StationIndex) -> bool:
         headers = _reception(emission).headers
         if station not in headers:
             begin, end = emission.start + SYNC, emission.start + PLCP
             success = 1.0
-            for length, sinr in self._stretches(emission, station, begin, end):
-                success *= _stretch_success(HEADER_RATE_MBPS, sinr, length)
+            for length, sinr_db in self._stretches(emission, station, begin, end):
+                success *= frame_success(HEADER_RATE_MBPS, sinr_db, HEADER_RATE_MBPS * length / 1000.0)
             headers[station] = self._survives(success)
         return headers[station]
 
@@ -241,54 +263,35 @@ class Receivers:
 
     def _judge_locked(self, emission: Emission, station: StationIndex) -> Judgement:
         """A collision is what the same draw would have let through without the others."""
-        alone = self._power(emission, station) / self._noise(station)
-        worst, success = alone, 1.0
-        for length, sinr in self._stretches(emission, station, emission.start + PLCP, emission.end):
-            worst = min(worst, sinr)
-            success *= _stretch_success(emission.rate_mbps, sinr, length)
-        worst_db = 10.0 * elementary.log10(worst)
+        alone_db = self._level_db(emission, station) - self._noise_db(station, [])
+        worst_db, success, rate_mbps = alone_db, 1.0, emission.rate_mbps
+        for length, sinr_db in self._stretches(emission, station, emission.start + PLCP, emission.end):
+            worst_db = min(worst_db, sinr_db)
+            success *= frame_success(rate_mbps, sinr_db, rate_mbps * length / 1000.0)
         if not self._reads_header(emission, station):
-            return DeliveryStatus.COLLISION if worst < alone else DeliveryStatus.BIT_ERRORS, worst_db
+            return (
+                DeliveryStatus.COLLISION if worst_db < alone_db else DeliveryStatus.BIT_ERRORS,
+                worst_db,
+            )
         if success >= 1.0:
             return None, worst_db
         drawn = self._draws.uniform()
         if drawn < success:
             return None, worst_db
-        undisturbed = frame_success(emission.rate_mbps, 10.0 * elementary.log10(alone), emission.bits)
-        collided = drawn < undisturbed
+        collided = drawn < frame_success(rate_mbps, alone_db, emission.bits)
         return DeliveryStatus.COLLISION if collided else DeliveryStatus.BIT_ERRORS, worst_db
 
     def _judge_unlocked(self, emission: Emission, station: StationIndex) -> Judgement:
+        """Its SINR is that under all frames that overlap it, together."""
         if emission.row[station] <= SILENT_DB:
             return DeliveryStatus.BELOW_THRESHOLD, SILENT_DB
-        signal, noise = self._power(emission, station), self._noise(station)
-        stretches = self._stretches(emission, station, emission.start, emission.end)
-        worst_db = 10.0 * elementary.log10(min(sinr for _, sinr in stretches))
-        if signal < self._threshold * noise:
-            return DeliveryStatus.BELOW_THRESHOLD, worst_db
-        if station in _reception(emission).deaf:
-            return DeliveryStatus.RECEIVER_BUSY, worst_db
-        return DeliveryStatus.COLLISION, worst_db
-
-    def _judge_alone(self, emission: Emission, station: StationIndex) -> Judgement:
-        """A frame that no other overlaps, at a receiver that is free."""
-        mean_db = emission.row[station]
-        if mean_db <= SILENT_DB:
-            return DeliveryStatus.BELOW_THRESHOLD, SILENT_DB
-        if emission.reception is None:
-            fade_db = self.fade_db() if emission.fade_db is None else emission.fade_db
-            snr_db = mean_db + fade_db - self._propagation.noise_rise_db[station]
-        else:
-            snr = self._power(emission, station) / self._noise(station)
-            snr_db = 10.0 * elementary.log10(snr)
-        if snr_db < self._threshold_db:
-            return DeliveryStatus.BELOW_THRESHOLD, snr_db
-        if snr_db >= CERTAIN_SINR_DB:
-            return None, snr_db
-        success = frame_success(HEADER_RATE_MBPS, snr_db, HEADER_BITS)
-        success *= frame_success(emission.rate_mbps, snr_db, emission.bits)
-        lost = self._draws.uniform() >= success
-        return (DeliveryStatus.BIT_ERRORS if lost else None), snr_db
+        reception = _reception(emission)
+        sinr_db = self._level_db(emission, station) - self._noise_db(station, reception.overlaps)
+        if not self._is_strong(emission, station):
+            return DeliveryStatus.BELOW_THRESHOLD, sinr_db
+        if station in reception.deaf:
+            return DeliveryStatus.RECEIVER_BUSY, sinr_db
+        return DeliveryStatus.COLLISION, sinr_db
 
 
 def _reception(emission: Emission) -> Reception:
@@ -296,8 +299,3 @@ def _reception(emission: Emission) -> Reception:
     if emission.reception is None:
         emission.reception = Reception()
     return emission.reception
-
-
-def _stretch_success(rate_mbps: float, sinr: float, length: int) -> float:
-    """What a stretch of so many nanoseconds lets through."""
-    return frame_success(rate_mbps, 10.0 * elementary.log10(sinr), rate_mbps * length / 1000.0)
