@@ -17,6 +17,9 @@ from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.link_rules import LinkRules
 from radio_proxy.core.medium import Medium
 
+WINDOWS = 12
+"""Contention windows that are computed in advance; the last is the largest of every PHY here."""
+
 
 @dataclass(slots=True, eq=False)
 class Frame:
@@ -80,6 +83,7 @@ class Contention:
         self._draws = draws
         self._sense_db = medium.propagation.budget.carrier_sense_db
         self._difs, self._slot = timing.difs, timing.slot
+        self._windows = [timing.window(failures) for failures in range(WINDOWS)]
         self._waiting: list[Station] = []
         self._after_error = timing.sifs + timing.ack
         self._errs_at_end = rules.as_ns3
@@ -100,7 +104,7 @@ class Contention:
 
     def join(self, station: Station, now: int) -> None:
         """Wait with a backoff out of the station's window."""
-        station.slots = self._draws.slots(self._timing.window(station.failures))
+        self._draw_backoff(station)
         self._enter(station, now)
 
     def take_next(self) -> Station:
@@ -201,6 +205,11 @@ class Contention:
                 self._resume(station, now)
         self.find_next()
 
+    def _draw_backoff(self, station: Station) -> None:
+        failures = station.failures
+        window = self._windows[failures] if failures < WINDOWS else self._windows[-1]
+        station.slots = self._draws.slots(window)
+
     def _drop(self, station: Station) -> None:
         station.contending = station.fresh = False
         station.slots = 0
@@ -242,5 +251,5 @@ class Contention:
             station.slots -= elapsed // self._slot
         if station.fresh and source != station.index:
             station.fresh = False
-            station.slots = self._draws.slots(self._timing.window(station.failures))
+            self._draw_backoff(station)
         station.access = NEVER

@@ -11,7 +11,7 @@ are not played. With a receive threshold so low that bystanders may receive its 
 all is played.
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Protocol
 
 from onehop.contracts.ideal_link import ACK_BYTES, RTS_BYTES
@@ -47,8 +47,8 @@ class Listener(Protocol):
 class Exchange:
     """One attempt to send a frame. delay: of propagation [ns]; fade_db, emission: as in the medium.
 
-    undisturbed: nobody can interfere with it. after_cts: the medium was reserved for its data. judged:
-    frames that were judged before they end.
+    undisturbed: nobody can interfere with it. after_cts: its data follows a CTS. reservation: by its
+    RTS. judged: frames that were judged before they end.
     """
 
     sender: Station
@@ -59,7 +59,8 @@ class Exchange:
     emission: Emission
     undisturbed: bool = False
     after_cts: bool = False
-    judged: list[Judgement] = field(default_factory=list)
+    reservation: Reservation | None = None
+    judged: tuple[Judgement, ...] = ()
 
 
 class Dcf:
@@ -131,13 +132,16 @@ class Dcf:
             self._contention.find_next()
             return
         frame.attempts += 1
-        timing, rules = self.timing, self._rules
-        fade_db = self.medium.receivers.fade_db() if rules.fade_per_exchange else None
-        alone = not self.medium.emissions and self._latest_timeout < now + PLCP
-        rts_cts = frame.receiver != EVERYONE and frame.msdu_bytes > rules.rts_threshold_bytes
-        size = RTS_BYTES if rts_cts else timing.mac_header_bytes + frame.msdu_bytes
-        rate = timing.basic_rate_mbps if rts_cts or frame.receiver == EVERYONE else timing.rate_mbps
-        emission = self._begin(station, frame.receiver, rate, size, fade_db, now)
+        timing, rules, medium = self.timing, self._rules, self.medium
+        fade_db = medium.receivers.fade_db() if rules.fade_per_exchange else None
+        alone = not medium.emissions and self._latest_timeout < now + PLCP
+        row, receiver_index = medium.propagation.mean_snr_row(station.index), frame.receiver
+        rts_cts = receiver_index != EVERYONE and frame.msdu_bytes > rules.rts_threshold_bytes
+        bits = 8 * (RTS_BYTES if rts_cts else timing.mac_header_bytes + frame.msdu_bytes)
+        at_basic_rate = rts_cts or receiver_index == EVERYONE
+        rate_mbps = timing.basic_rate_mbps if at_basic_rate else timing.rate_mbps
+        emission = Emission(station.index, receiver_index, rate_mbps, bits, row, fade_db, now)
+        self._begin(emission, now)
         alone = alone and self._contention.next_access > now + timing.turnaround
         if frame.receiver == EVERYONE:
             delay = delay_ns(self.medium.propagation.farthest(station.index))
@@ -175,15 +179,17 @@ class Dcf:
 
     def _is_cleared(self, exchange: Exchange) -> bool:
         """Judge RTS and CTS of an undisturbed exchange in advance; if one fails, they are played out."""
-        rts = exchange.emission
-        exchange.judged.append(self._judge(rts, rts.receiver))
-        if exchange.judged[0][0] is None:
-            row = self.medium.propagation.mean_snr_row(rts.receiver)
-            rate, bits, fade_db = self.timing.basic_rate_mbps, 8 * ACK_BYTES, exchange.fade_db
-            cts = Emission(rts.receiver, rts.source, rate, bits, row, fade_db, rts.start)
-            exchange.judged.append(self._judge(cts, rts.source))
-            if exchange.judged[1][0] is None:
-                exchange.judged.clear()
+        medium, rts, fade_db = self.medium, exchange.emission, exchange.fade_db
+        judge, rate_mbps = medium.receivers.judge_alone, rts.rate_mbps
+        receiver, sender = rts.receiver, rts.source
+        judged = judge(receiver, rts.row[receiver], fade_db, rate_mbps, rts.bits)
+        exchange.judged = (judged,)
+        if judged[0] is None:
+            mean_db = medium.propagation.mean_snr_row(receiver)[sender]
+            answer = judge(sender, mean_db, fade_db, rate_mbps, 8 * ACK_BYTES)
+            exchange.judged = (judged, answer)
+            if answer[0] is None:
+                exchange.judged = ()
                 exchange.after_cts = True
                 rts.rate_mbps = self.timing.rate_mbps
                 rts.bits = 8 * (self.timing.mac_header_bytes + exchange.frame.msdu_bytes)
@@ -191,43 +197,42 @@ class Dcf:
         exchange.undisturbed = False
         return False
 
-    def _begin(
-        self,
-        station: Station,
-        receiver: StationIndex,
-        rate_mbps: float,
-        size_bytes: int,
-        fade_db: float | None,
-        now: int,
-    ) -> Emission:
-        bits = 8 * size_bytes
-        emission = self.medium.begin(station.index, receiver, rate_mbps, bits, fade_db, now)
+    def _begin(self, emission: Emission, now: int) -> None:
+        self.medium.begin(emission)
         self._contention.on_busy(emission, now)
-        return emission
+
+    def _respond(
+        self, exchange: Exchange, responder: Station, rate_mbps: float, size_bytes: int, now: int
+    ) -> None:
+        """The next frame of an exchange begins."""
+        index = responder.index
+        ends = exchange.sender.index, exchange.receiver.index
+        row, bits = self.medium.propagation.mean_snr_row(index), 8 * size_bytes
+        other = ends[0] if index == ends[1] else ends[1]
+        emission = Emission(index, other, rate_mbps, bits, row, exchange.fade_db, now)
+        exchange.emission = emission
+        self._begin(emission, now)
 
     def _end(self, emission: Emission, now: int) -> None:
-        """An emission ends; `_leave_idle` must follow, when its addressee has judged it."""
+        """An emission ends; `on_idle` must follow when it has been judged."""
         errors = self.medium.end(emission, now)
         if errors or self._contention.minds_errors:
             erring = [self._stations[index] for index in errors]
             self._contention.on_frame_end(emission, erring, now)
-
-    def _leave_idle(self, emission: Emission, now: int, responder: StationIndex = EVERYONE) -> None:
-        """The medium is idle after an emission. responder: who transmits next, after a SIFS."""
-        if responder == EVERYONE:
-            self._contention.on_idle(now)
-        else:
-            self._contention.on_idle(now, self.medium.propagation.mean_snr_row(responder))
         if self._listening:
             for exchange in self._listening.pop(emission, ()):
                 self._on_timeout(exchange, now)
 
+    def _await_response(self, responder: Station, now: int) -> None:
+        """A frame has ended, and its addressee transmits the next one after a SIFS."""
+        self._contention.on_idle(now, self.medium.propagation.mean_snr_row(responder.index))
+
     def _on_broadcast_end(self, exchange: Exchange, now: int) -> None:
         sender = exchange.sender
         self._end(exchange.emission, now)
-        self._leave_idle(exchange.emission, now)
+        self._contention.on_idle(now)
         if not sender.gone:
-            self._retries.on_success(sender, is_broadcast=True)
+            self._retries.on_broadcast(sender)
             frame = self._finish(sender, now)
             self._listener.on_broadcast_done(sender.index, frame, exchange.emission, now)
             self._serve_next(sender, now)
@@ -238,7 +243,8 @@ class Dcf:
         if exchange.sender.gone or exchange.receiver.gone:
             frame.cause = DeliveryStatus.RECEIVER_GONE
         elif exchange.judged:
-            frame.cause, frame.sinr_db = exchange.judged.pop(0)
+            (frame.cause, frame.sinr_db), *rest = exchange.judged
+            exchange.judged = tuple(rest)
         else:
             frame.cause, frame.sinr_db = self._judge(exchange.emission, at.index)
         return frame.cause is None
@@ -249,7 +255,6 @@ class Dcf:
         return self.medium.nav.reserve(exchange.emission, until, now)
 
     def _on_rts_end(self, exchange: Exchange, now: int) -> None:
-        """A bystander of an RTS resets its NAV unless another frame follows (9.2.5.4)."""
         timing, receiver = self.timing, exchange.receiver
         self._end(exchange.emission, now)
         received = self._is_received(exchange, receiver)
@@ -257,18 +262,23 @@ class Dcf:
             exchange.frame.cause = DeliveryStatus.RECEIVER_BUSY
             received = False
         data = timing.data(exchange.frame.msdu_bytes)
-        reservation = self._reserve(exchange, now, 3, timing.cts + data + timing.ack)
-        self.medium.nav.watch(reservation)
+        exchange.reservation = self._reserve(exchange, now, 3, timing.cts + data + timing.ack)
+        if received:
+            self._at(now + timing.sifs, self._send_cts, exchange)
+            self._await_response(receiver, now)
+            return
+        self._contention.on_idle(now)
+        self._await(exchange, now - exchange.delay + timing.response_timeout)
+        self._watch_nav(exchange.reservation, now)
+
+    def _watch_nav(self, reservation: Reservation, rts_end: int) -> None:
+        """A bystander of an RTS that no data will follow resets its NAV (9.2.5.4)."""
+        timing = self.timing
         nav_timeout = 2 * timing.sifs + timing.cts + 2 * timing.slot
         if self._rules.as_ns3:
             nav_timeout += timing.preamble
-        self._at(now + nav_timeout, self._on_nav_timeout, reservation)
-        if received:
-            self._at(now + timing.sifs, self._send_cts, exchange)
-            self._leave_idle(exchange.emission, now, receiver.index)
-            return
-        self._leave_idle(exchange.emission, now)
-        self._await(exchange, now - exchange.delay + timing.response_timeout)
+        self.medium.nav.watch(reservation)
+        self._at(rts_end + nav_timeout, self._on_nav_timeout, reservation)
 
     def _on_nav_timeout(self, reservation: Reservation, now: int) -> None:
         self.medium.nav.reset(reservation, now)
@@ -288,11 +298,14 @@ class Dcf:
             exchange.after_cts = True
             self._retries.on_cts(exchange.frame)
             self._at(now + timing.sifs, self._send_data, exchange)
-            self._leave_idle(exchange.emission, now, sender.index)
+            self._await_response(sender, now)
             return
-        self._leave_idle(exchange.emission, now)
+        self._contention.on_idle(now)
         rts_end = now - timing.cts - timing.sifs - 2 * exchange.delay
         self._await(exchange, max(now, rts_end + timing.response_timeout))
+        assert exchange.reservation is not None, "a CTS follows an RTS"
+        exchange.reservation.later.append(exchange.emission)
+        self._watch_nav(exchange.reservation, rts_end + exchange.delay)
 
     def _send_data(self, exchange: Exchange, now: int) -> None:
         timing, msdu_bytes = self.timing, exchange.frame.msdu_bytes
@@ -307,19 +320,17 @@ class Dcf:
         if not exchange.undisturbed or not received:
             self._reserve(exchange, now, 1, timing.ack)
         if not received:
-            self._leave_idle(exchange.emission, now)
+            self._contention.on_idle(now)
             self._await(exchange, now - exchange.delay + timing.response_timeout)
             return
         if not exchange.undisturbed:
             self._at(now + timing.sifs, self._send_ack, exchange)
-            self._leave_idle(exchange.emission, now, receiver.index)
+            self._await_response(receiver, now)
         if not frame.received:
             frame.received = True
             self._listener.on_received(receiver.index, exchange.sender.index, frame, now)
         if exchange.undisturbed:
-            rate, sender = timing.basic_rate_mbps, exchange.sender.index
-            ack = self._begin(receiver, sender, rate, ACK_BYTES, exchange.fade_db, now)
-            exchange.emission = ack
+            self._respond(exchange, receiver, timing.basic_rate_mbps, ACK_BYTES, now)
             self._at(now + timing.sifs + timing.ack + exchange.delay, self._on_ack_end, exchange)
 
     def _send_ack(self, exchange: Exchange, now: int) -> None:
@@ -331,12 +342,12 @@ class Dcf:
         timing, sender = self.timing, exchange.sender
         self._end(exchange.emission, now)
         received = self._is_received(exchange, sender)
-        self._leave_idle(exchange.emission, now)
+        self._contention.on_idle(now)
         if not received:
             data_end = now - timing.ack - timing.sifs - 2 * exchange.delay
             self._await(exchange, max(now, data_end + timing.response_timeout))
         elif not sender.gone:
-            self._retries.on_success(sender, is_broadcast=False)
+            sender.failures = 0
             frame = self._finish(sender, now)
             self._listener.on_acknowledged(sender.index, frame, now)
             self._serve_next(sender, now)
@@ -349,9 +360,7 @@ class Dcf:
             exchange.frame.cause = DeliveryStatus.RECEIVER_GONE
             self._await(exchange, now + self.timing.response_timeout)
             return False
-        other = exchange.receiver if transmitter is exchange.sender else exchange.sender
-        fade_db = exchange.fade_db
-        exchange.emission = self._begin(transmitter, other.index, rate_mbps, size_bytes, fade_db, now)
+        self._respond(exchange, transmitter, rate_mbps, size_bytes, now)
         return True
 
     def _await(self, exchange: Exchange, until: int) -> None:

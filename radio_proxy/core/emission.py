@@ -15,10 +15,10 @@ class Reception:
     """A frame at its receivers; kept only of frames that overlap others, or that somebody overheard.
 
     overlaps: every other emission that was in progress meanwhile. levels_db: received power at a
-    station, over the noise floor, fading included. deaf: stations that could not receive it, because they
-    transmitted or were locked on another frame. locked: stations that locked on it; None until the time
-    of preamble detection is over. headers: whether a locked station could read the PLCP header; judged:
-    how the frame ended.
+    station, over the noise floor, fading included. deaf: stations that could not receive it, because
+    they transmitted or were locked on another frame. locked: stations that locked on it; None until the
+    time of preamble detection is over. headers: whether a locked station could read the PLCP header.
+    judged: how the frame ended.
     """
 
     overlaps: list["Emission"] = field(default_factory=list)

@@ -29,24 +29,13 @@ class Medium:
         self.detects_energy = rules.energy_detect_db is not None
         self._energy = elementary.power_of_ten((rules.energy_detect_db or 0.0) / 10.0)
 
-    def begin(
-        self,
-        source: StationIndex,
-        receiver: StationIndex,
-        rate_mbps: float,
-        bits: int,
-        fade_db: float | None,
-        now: int,
-    ) -> Emission:
+    def begin(self, emission: Emission) -> None:
         """Start a transmission; it and every other one in progress interfere with each other."""
-        row = self.propagation.mean_snr_row(source)
-        emission = Emission(source, receiver, rate_mbps, bits, row, fade_db, now)
         if self.emissions:
             self.receivers.overlap(emission, self.emissions)
         self.emissions.append(emission)
         if self.nav.watching:
             self.nav.on_begin(emission)
-        return emission
 
     def end(self, emission: Emission, now: int) -> list[StationIndex]:
         """A transmission is over; returns the stations that received it with errors."""

@@ -110,26 +110,28 @@ class Receivers:
 
         A frame that nobody looked at yet overlaps no other, and a receiver was free for it.
         """
-        mean_db = emission.row[station]
+        reception, fade_db, mean_db = emission.reception, emission.fade_db, emission.row[station]
+        if reception is not None:
+            if station in reception.judged:
+                return reception.judged[station]
+            fade_db = self._level_db(emission, station) - mean_db
+        return self.judge_alone(station, mean_db, fade_db, emission.rate_mbps, emission.bits)
+
+    def judge_alone(
+        self, station: StationIndex, mean_db: float, fade_db: float | None, rate_mbps: float, bits: int
+    ) -> Judgement:
+        """A frame that no other overlaps, at a receiver that is free for it."""
         if mean_db <= SILENT_DB:
             return DeliveryStatus.BELOW_THRESHOLD, SILENT_DB
-        reception = emission.reception
-        if reception is None:
-            fade_db = emission.fade_db
-            if fade_db is None:
-                fade_db = self._sigma_db * self._draws.normal() if self._sigma_db else 0.0
-            snr_db = mean_db + fade_db - self._propagation.noise_rise_db[station]
-        elif station in reception.judged:
-            return reception.judged[station]
-        else:
-            rise_db = self._propagation.noise_rise_db[station]
-            snr_db = self._level_db(emission, station) - rise_db
+        if fade_db is None:
+            fade_db = self._sigma_db * self._draws.normal() if self._sigma_db else 0.0
+        snr_db = mean_db + fade_db - self._propagation.noise_rise_db[station]
         if snr_db < self._threshold_db:
             return DeliveryStatus.BELOW_THRESHOLD, snr_db
         if snr_db >= CERTAIN_SINR_DB:
             return None, snr_db
         success = frame_success(HEADER_RATE_MBPS, snr_db, HEADER_BITS)
-        success *= frame_success(emission.rate_mbps, snr_db, emission.bits)
+        success *= frame_success(rate_mbps, snr_db, bits)
         lost = self._draws.uniform() >= success
         return (DeliveryStatus.BIT_ERRORS if lost else None), snr_db
 
@@ -150,7 +152,8 @@ class Receivers:
             self.detect([emission], now)
         reception = _reception(emission)
         if reception.locked is None:
-            return self._is_strong(emission, station)
+            level_db = self._level_db(emission, station)
+            return level_db - self._propagation.noise_rise_db[station] >= self._threshold_db
         return station in reception.locked and self._reads_header(emission, station)
 
     def receiving(self, station: StationIndex, in_progress: list[Emission], now: int) -> Emission | None:
@@ -163,31 +166,27 @@ class Receivers:
     # Preamble and lock.
 
     def _lock(self, emission: Emission) -> None:
+        """Lock those for whom the signal is strong enough alone, and enough above its rivals."""
         detected = emission.start + DETECTION
         reception = _reception(emission)
-        locked = reception.locked = []
+        reception.locked = []
         rivals = [other for other in reception.overlaps if other.start < detected < other.end]
-        source, deaf, locked_on = emission.source, reception.deaf, self._locked_on
+        deaf, locked_on, rises_db = reception.deaf, self._locked_on, self._propagation.noise_rise_db
         for index, mean_db in enumerate(emission.row):
             station = StationIndex(index)
-            if mean_db <= SILENT_DB or station == source or station in deaf or station in locked_on:
+            if mean_db <= SILENT_DB or station in deaf or station in locked_on:
                 continue
-            if self._is_strong(emission, station) and self._is_detected(emission, station, rivals):
-                locked.append(station)
-                locked_on[station] = emission
-
-    def _is_strong(self, emission: Emission, station: StationIndex) -> bool:
-        """Whether the signal alone reaches the receive threshold."""
-        rise_db = self._propagation.noise_rise_db[station]
-        return self._level_db(emission, station) - rise_db >= self._threshold_db
-
-    def _is_detected(self, emission: Emission, station: StationIndex, rivals: list[Emission]) -> bool:
-        """Whether a preamble is detected among rivals; none of them alone may be too strong, nor all."""
-        least_db = self._level_db(emission, station) - self._detectable_db
-        for rival in rivals:
-            if self._level_db(rival, station) > least_db:
-                return False
-        return not rivals or self._noise_db(station, rivals) <= least_db
+            level_db = self._level_db(emission, station)
+            if level_db - rises_db[index] < self._threshold_db or station == emission.source:
+                continue
+            least_db = level_db - self._detectable_db
+            for rival in rivals:
+                if self._level_db(rival, station) > least_db:
+                    break
+            else:
+                if not rivals or self._noise_db(station, rivals) <= least_db:
+                    reception.locked.append(station)
+                    locked_on[station] = emission
 
     def _release(self, station: StationIndex) -> None:
         """A station gives up the frame that it is locked on."""
@@ -286,8 +285,10 @@ class Receivers:
         if emission.row[station] <= SILENT_DB:
             return DeliveryStatus.BELOW_THRESHOLD, SILENT_DB
         reception = _reception(emission)
-        sinr_db = self._level_db(emission, station) - self._noise_db(station, reception.overlaps)
-        if not self._is_strong(emission, station):
+        level_db = self._level_db(emission, station)
+        sinr_db = level_db - self._noise_db(station, reception.overlaps)
+        alone_db = level_db - self._propagation.noise_rise_db[station]
+        if alone_db < self._threshold_db:
             return DeliveryStatus.BELOW_THRESHOLD, sinr_db
         if station in reception.deaf:
             return DeliveryStatus.RECEIVER_BUSY, sinr_db

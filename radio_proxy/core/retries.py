@@ -44,7 +44,7 @@ class Retries:
             station.failures = 0 if given_up else station.failures + 1
         return given_up
 
-    def on_success(self, station: Station, is_broadcast: bool) -> None:
-        """A frame was acknowledged, or sent to everyone."""
-        if not (self._as_ns3 and is_broadcast):
+    def on_broadcast(self, station: Station) -> None:
+        """A frame was sent to everyone."""
+        if not self._as_ns3:
             station.failures = 0
