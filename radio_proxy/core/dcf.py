@@ -11,56 +11,20 @@ are not played. With a receive threshold so low that bystanders may receive its 
 all is played.
 """
 
-from dataclasses import dataclass
-from typing import Protocol
-
 from onehop.contracts.ideal_link import ACK_BYTES, RTS_BYTES
 from onehop.contracts.messages import DeliveryStatus
 from radio_proxy.core.addresses import EVERYONE, StationIndex
 from radio_proxy.core.airtime import Timing, delay_ns
 from radio_proxy.core.contention import Contention, Frame, Station
 from radio_proxy.core.draws import Draws
-from radio_proxy.core.emission import Emission, Judgement
+from radio_proxy.core.emission import Emission
 from radio_proxy.core.event_queue import EventQueue
+from radio_proxy.core.exchange import Exchange, Listener
 from radio_proxy.core.link_rules import LinkRules
 from radio_proxy.core.medium import Medium
 from radio_proxy.core.nav import Reservation
 from radio_proxy.core.reception import PLCP
 from radio_proxy.core.retries import Retries
-
-
-class Listener(Protocol):
-    """The layer above: what becomes of frames."""
-
-    def on_service(self, sender: StationIndex, frame: Frame, now: int) -> None: ...
-    def on_received(
-        self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int
-    ) -> None: ...
-    def on_broadcast_done(
-        self, sender: StationIndex, frame: Frame, emission: Emission, now: int
-    ) -> None: ...
-    def on_acknowledged(self, sender: StationIndex, frame: Frame, now: int) -> None: ...
-    def on_undeliverable(self, sender: StationIndex, frame: Frame, now: int) -> None: ...
-
-
-@dataclass(slots=True, eq=False)
-class Exchange:
-    """One attempt to send a frame. delay: of propagation [ns]; fade_db, emission: as in the medium.
-
-    undisturbed: nobody can interfere with it. after_cts: its data follows a CTS. reservation: by its
-    RTS. judged: frames that were judged before they end.
-    """
-
-    sender: Station
-    receiver: Station
-    frame: Frame
-    delay: int
-    fade_db: float | None
-    emission: Emission
-    undisturbed: bool = False
-    after_cts: bool = False
-    reservation: Reservation | None = None
-    judged: tuple[Judgement, ...] = ()
 
 
 class Dcf:
@@ -249,7 +213,7 @@ class Dcf:
             frame.cause, frame.sinr_db = self._judge(exchange.emission, at.index)
         return frame.cause is None
 
-    def _reserve(self, exchange: Exchange, now: int, frames: int, airtime: int) -> Reservation:
+    def _reserve(self, exchange: Exchange, now: int, frames: int, airtime: int) -> Reservation | None:
         """The duration field: so many frames of so much airtime are still to come in this exchange."""
         until = now + frames * (self.timing.sifs + exchange.delay) + airtime
         return self.medium.nav.reserve(exchange.emission, until, now)
@@ -269,7 +233,8 @@ class Dcf:
             return
         self._contention.on_idle(now)
         self._await(exchange, now - exchange.delay + timing.response_timeout)
-        self._watch_nav(exchange.reservation, now)
+        if exchange.reservation is not None:
+            self._watch_nav(exchange.reservation, now)
 
     def _watch_nav(self, reservation: Reservation, rts_end: int) -> None:
         """A bystander of an RTS that no data will follow resets its NAV (9.2.5.4)."""
@@ -303,9 +268,9 @@ class Dcf:
         self._contention.on_idle(now)
         rts_end = now - timing.cts - timing.sifs - 2 * exchange.delay
         self._await(exchange, max(now, rts_end + timing.response_timeout))
-        assert exchange.reservation is not None, "a CTS follows an RTS"
-        exchange.reservation.later.append(exchange.emission)
-        self._watch_nav(exchange.reservation, rts_end + exchange.delay)
+        if exchange.reservation is not None:
+            exchange.reservation.later.append(exchange.emission)
+            self._watch_nav(exchange.reservation, rts_end + exchange.delay)
 
     def _send_data(self, exchange: Exchange, now: int) -> None:
         timing, msdu_bytes = self.timing, exchange.frame.msdu_bytes

@@ -37,8 +37,11 @@ class Reservations:
         self._reservations: list[Reservation] = []
         self.watching: list[Reservation] = []
 
-    def reserve(self, emission: Emission, until: int, now: int) -> Reservation:
-        """Set the NAV of every station that received this frame, but for its addressee."""
+    def reserve(self, emission: Emission, until: int, now: int) -> Reservation | None:
+        """Set the NAV of every station that received this frame, but for its addressee; None: nobody."""
+        reception = emission.reception
+        if reception is not None and reception.locked == []:
+            return None
         self._reservations = [r for r in self._reservations if r.until > now]
         reservation = Reservation(until, emission)
         self._reservations.append(reservation)
