@@ -80,6 +80,10 @@ class Dcf:
         head = [] if station.frame is None else [station.frame]
         return [*head, *station.urgent, *station.queue]
 
+    def reassess(self, now: int) -> None:
+        """Find out again for whom the medium is busy."""
+        self._contention.reassess(now)
+
     def _serve(self, station: Station, now: int, force_backoff: bool) -> None:
         """The head of the queue comes into service; it waits out a backoff that is still running."""
         station.frame = frame = (station.urgent or station.queue).popleft()
@@ -154,7 +158,7 @@ class Dcf:
             exchange.judged = (judged, answer)
             if answer[0] is None:
                 exchange.judged = ()
-                exchange.after_cts = True
+                self._on_cts(exchange)
                 rts.rate_mbps = self.timing.rate_mbps
                 rts.bits = 8 * (self.timing.mac_header_bytes + exchange.frame.msdu_bytes)
                 return True
@@ -260,8 +264,7 @@ class Dcf:
         received = self._is_received(exchange, sender)
         self._reserve(exchange, now, 2, timing.data(exchange.frame.msdu_bytes) + timing.ack)
         if received:
-            exchange.after_cts = True
-            self._retries.on_cts(exchange.frame)
+            self._on_cts(exchange)
             self._at(now + timing.sifs, self._send_data, exchange)
             self._await_response(sender, now)
             return
@@ -271,6 +274,10 @@ class Dcf:
         if exchange.reservation is not None:
             exchange.reservation.later.append(exchange.emission)
             self._watch_nav(exchange.reservation, rts_end + exchange.delay)
+
+    def _on_cts(self, exchange: Exchange) -> None:
+        exchange.after_cts = True
+        self._retries.on_cts(exchange.frame)
 
     def _send_data(self, exchange: Exchange, now: int) -> None:
         timing, msdu_bytes = self.timing, exchange.frame.msdu_bytes

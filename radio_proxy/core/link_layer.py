@@ -53,6 +53,11 @@ class LinkLayer:
         self._dcf = Dcf(len(robots), self._timing, self._medium, draws, self, rules)
         self.events = self._dcf.events
 
+    def on_placed(self, now: int) -> None:
+        """Robots moved and jams changed, so that the energy at a station did."""
+        if self._medium.detects_energy:
+            self._dcf.reassess(now)
+
     def attach(self, robot: RobotId, router: Router) -> None:
         """A robot's NIC comes up, with this routing protocol."""
         self._routers = dict(sorted([*self._routers.items(), (robot, router)]))

@@ -10,7 +10,7 @@ from radio_proxy.core.addresses import StationIndex
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.link_rules import link_rules
-from radio_proxy.core.saturation import Load, Saturation, Tally
+from radio_proxy.core.saturation import Load, Saturation, Tally, pair
 
 place = st.tuples(st.integers(0, 25), st.integers(0, 25))
 
@@ -18,9 +18,9 @@ WEAK = {"tx_power_dbm": -14.0, "receive_threshold_db": -8.0, "carrier_sense_db":
 """23 dB at 1 m: the farther of the bystanders lock on frames that they cannot read."""
 
 
-def run(load: Load, section: RadioSection, take_shortcuts: bool) -> Tally:
+def run(load: Load, section: RadioSection, take_shortcuts: bool, seconds: float = 0.5) -> Tally:
     parts = dsss(section), link_budget(section), 7, link_rules(section)
-    return Saturation(load, *parts, take_shortcuts=take_shortcuts).run(0.5)
+    return Saturation(load, *parts, take_shortcuts=take_shortcuts).run(seconds)
 
 
 @settings(max_examples=60, deadline=None, derandomize=True)
@@ -47,3 +47,11 @@ def test_shortcuts_change_nothing(
     receivers = tuple(StationIndex((i + 1) % count) for i in range(count))
     load = Load(tuple((float(x), float(y)) for x, y in places), receivers, 800, rts_cts)
     assert run(load, section, True) == run(load, section, False)
+
+
+def test_shortcuts_change_nothing_on_a_link_that_fades() -> None:
+    section = RadioSection(short_retry_limit=7, long_retry_limit=4)
+    for rts_cts in (True, False):
+        load = pair(20.0, 800, rts_cts)
+        tallies = [run(load, section, shortcuts, 20.0) for shortcuts in (True, False)]
+        assert tallies[0] == tallies[1]
