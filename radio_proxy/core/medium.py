@@ -55,7 +55,7 @@ class Medium:
 
     def _received_energy(self, station: StationIndex) -> float:
         """Mean power at a station of all frames and jams over the noise floor."""
-        energy = elementary.power_of_ten(self.propagation.noise_rise_db[station] / 10.0) - 1.0
+        energy = elementary.power_of_ten(self.propagation.noise_rise(station) / 10.0) - 1.0
         for emission in self.emissions:
             energy += elementary.power_of_ten(emission.row[station] / 10.0)
         return energy
