@@ -17,6 +17,7 @@ from onehop.contracts.messages import DeliveryStatus, Presence, Transmission, Tr
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import dsss
 from radio_proxy.core.link_budget import link_budget
+from radio_proxy.core.link_rules import link_rules
 from radio_proxy.core.radio import Radio
 from radio_proxy.core.saturation import Saturation, ring
 
@@ -151,7 +152,8 @@ def engine(stations: int, seconds: float) -> dict[str, object]:
     cost = {}
     for name, shortcuts in (("shortcuts", True), ("played_out", False)):
         load = ring(stations, 800, True)
-        run = Saturation(load, dsss(section), link_budget(section), 1, 7, take_shortcuts=shortcuts)
+        budget, rules = link_budget(section), link_rules(section)
+        run = Saturation(load, dsss(section), budget, 1, rules, take_shortcuts=shortcuts)
         begin = time.process_time()
         tally = run.run(seconds)
         cost[name] = (time.process_time() - begin) / sum(tally.delivered) * 1e6

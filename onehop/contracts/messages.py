@@ -190,8 +190,9 @@ class DeliveryStatus(StrEnum):
     """What became of a data message; of a lost one, why its last attempt on its last hop failed.
 
     BELOW_THRESHOLD: too weak at the receiver (distance, wall, cut, jam), also without other frames.
-    COLLISION: strong enough, had no other frame overlapped it; what the receiver itself sent counts.
-    RECEIVER_BUSY: an RTS reached a station that had to stay silent, because others reserved the medium.
+    COLLISION: would have been received, had no other frame overlapped its preamble or its bits.
+    RECEIVER_BUSY: strong enough, but its receiver was locked on another frame or transmitted itself; or
+    it was an RTS, and its receiver had to stay silent, because others had reserved the medium.
     NO_ROUTE, QUEUE_FULL: at the robot that held it. RECEIVER_GONE: its destination is not in the mission
     any more, or came back as another process, whatever else failed. RELAY_GONE: the same of a robot on
     its way, which held it or was to take it next; SENDER_GONE: of its source, which still held it.

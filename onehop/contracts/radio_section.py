@@ -17,18 +17,28 @@ class RadioSection:
         The next seven are None to be as the preset says.
     tx_power_dbm; path_loss_exponent n; noise_dbm: floor in 22 MHz; shadowing_db: sigma of the
         log-normal fading that is drawn anew, place or no place (see fading);
-        receive_threshold_db: lowest SINR that is received;
+        receive_threshold_db: lowest SNR of a signal that a receiver locks on;
         carrier_sense_db: lowest SNR of a carrier that makes the medium busy.
     spatial_shadowing_db: sigma of the log-normal shadowing between places. decorrelation_distance: that
         one end moves until it is correlated by 1/e [m] (Gudmundson 1991).
     fast_fading: of many paths, "none", "rayleigh" or "rician", with the Doppler of the robots' motion.
         rician_k_db: power of the line of sight over all other paths. ambient_doppler_hz: of what else
         moves; 0 leaves the channel of standing robots as it is.
+    energy_detect_db: lowest power of everything received, over the noise floor, that makes the medium
+        busy as well [dB]; None: only carriers do (CCA mode 2).
+    preamble_sinr_db: lowest SINR at which a preamble is detected among other frames [dB]; None: the
+        receive threshold.
+    capture_db: a frame stronger by this takes over a receiver in the preamble of another [dB]; None:
+        a receiver that is locked stays so.
     frequency_hz, antenna_gain_dbi (each end), system_loss_db, reference_distance d0 [m].
     fading: a new draw for each "frame", or one for each "exchange". wall_loss_db: per wall crossed.
     rate_mbps: of data frames. rts_threshold_bytes: longer MSDUs are sent with RTS/CTS (2304: never).
     mac_header_bytes: 34 in the thesis's sums, 28 with three addresses.
-    retry_limit: attempts of one frame. cts_timeout_us: from the end of a frame until its answer is
+    retry_limit: attempts of one frame in all, 7 in the thesis. None with preset "physical" or with
+        short_retry_limit or long_retry_limit: as in 802.11-1999, 9.2.5.3, so many failures without and
+        with a CTS before (None: 7 and 4).
+    as_ns3: read the standard as ns-3 3.44 does where it differs (docs/radio-model.md).
+    cts_timeout_us: from the end of a frame until its answer is
         given up (SIFS + slot + preamble; 334 in the standard of 1999).
     queue_frames: bound of the queue of a NIC; a frame that finds it full is dropped.
     routing: "direct" (one hop only), "mrsr" (on DSR) or "mrdv" (on AODV).
@@ -37,7 +47,9 @@ class RadioSection:
 
     preset: Literal["thesis", "physical", "indoor"] = "thesis"
     rate_mbps: Annotated[float, Range(1.0, 11.0)] = 1.0
-    retry_limit: Annotated[int, Range(1, 255)] = 7
+    retry_limit: Annotated[int, Range(1, 255)] | None = None
+    short_retry_limit: Annotated[int, Range(1, 255)] | None = None
+    long_retry_limit: Annotated[int, Range(1, 255)] | None = None
     tx_power_dbm: Annotated[float, Range(-100.0, 100.0)] | None = None
     path_loss_exponent: Annotated[float, Range(1.0, 10.0)] | None = None
     noise_dbm: Annotated[float, Range(-200.0, 100.0)] | None = None
@@ -49,6 +61,10 @@ class RadioSection:
     fast_fading: Literal["none", "rayleigh", "rician"] = "none"
     rician_k_db: Annotated[float, Range(-40.0, 40.0)] = 6.0
     ambient_doppler_hz: Annotated[float, Range(0.0, 1e3)] = 0.0
+    energy_detect_db: Annotated[float, Range(-50.0, 100.0)] | None = None
+    preamble_sinr_db: Annotated[float, Range(0.0, 100.0)] | None = None
+    capture_db: Annotated[float, Range(0.0, 100.0)] | None = None
+    as_ns3: bool = False
     frequency_hz: Annotated[float, Range(1e6, 1e12)] = 2.4e9
     antenna_gain_dbi: Annotated[float, Range(-50.0, 50.0)] = 0.0
     system_loss_db: Annotated[float, Range(-100.0, 100.0)] = 0.0
@@ -65,3 +81,7 @@ class RadioSection:
     def problems(self) -> Iterator[Problem]:
         if self.rate_mbps not in (1.0, 2.0, 5.5, 11.0):
             yield Problem("rate_mbps", f"{self.rate_mbps} Mb/s", "1, 2, 5.5 or 11 (802.11b)")
+        if self.retry_limit is not None:
+            for key in ("short_retry_limit", "long_retry_limit"):
+                if getattr(self, key) is not None:
+                    yield Problem(key, "set beside retry_limit", "one limit, or short and long ones")

@@ -1,7 +1,7 @@
 """Times of the DCF and of its frames, in integer nanoseconds (thesis eq. 3.15 to 3.22).
 
 The constants are onehop.contracts.ideal_link's; here they become the clock of the event simulation. Left
-out: short preamble, EIFS (neither Bianchi's nor the thesis's sums have it).
+out: short preamble.
 """
 
 from dataclasses import dataclass

@@ -11,6 +11,7 @@ import math
 from radio_proxy.core.airtime import Timing
 from radio_proxy.core.error_rates import frame_success
 from radio_proxy.core.link_budget import LinkBudget
+from radio_proxy.core.link_rules import RetryLimits
 
 FADED_STEP = 0.0625
 """Faded SNRs are rounded to multiples of it: error rates of CCK take milliseconds each [dB]."""
@@ -75,17 +76,21 @@ def frame_probability(budget: LinkBudget, snr_db: float, rate_mbps: float, size_
 
 
 class SaturatedLink:
-    """One sender that always has a message, alone on the medium, over a lossy link."""
+    """One sender that always has a message, alone on the medium, over a lossy link (not as_ns3)."""
 
-    def __init__(self, timing: Timing, msdu_bytes: int, retry_limit: int, rts_cts: bool = True) -> None:
+    def __init__(
+        self, timing: Timing, msdu_bytes: int, retries: RetryLimits, rts_cts: bool = True
+    ) -> None:
         self._timing = timing
         self._bits = 8 * msdu_bytes
         self._data = timing.data(msdu_bytes)
-        self._limit = retry_limit
+        self._retries = retries
         self._rts_cts = rts_cts
 
-    def _backoff_us(self, failures: int) -> float:
-        return self._timing.window(failures) * self._timing.slot / 2000.0
+    def _wait_us(self, failures: int) -> float:
+        """DIFS and the mean backoff after so many failures."""
+        timing = self._timing
+        return timing.difs / 1000.0 + timing.window(failures) * timing.slot / 2000.0
 
     def _times_us(self) -> tuple[float, float, float]:
         """Costs of an attempt: RTS without CTS, data without ACK, all of it [us]."""
@@ -99,19 +104,19 @@ class SaturatedLink:
     def one_draw_per_exchange(self, p: float) -> tuple[float, float, float]:
         """Delivery ratio, throughput [Mb/s] and mean delay of a delivered message [us].
 
-        p: probability that an exchange gets through; its first frame decides it.
+        p: probability that an exchange gets through; its first frame decides it, and counts as short.
         """
         lost_rts, lost_data, whole = self._times_us()
         lost = lost_rts if self._rts_cts else lost_data
+        limit = self._retries.short if self._retries.single is None else self._retries.single
         q = 1.0 - p
-        difs = self._timing.difs / 1000.0
         spent = delay = passed = 0.0
-        for i in range(self._limit):
-            wait = difs + self._backoff_us(i)
+        for i in range(limit):
+            wait = self._wait_us(i)
             delay += q**i * p * (passed + wait + whole)
             spent += q**i * (wait + p * whole + q * lost)
             passed += wait + lost
-        ratio = 1.0 - q**self._limit
+        ratio = 1.0 - q**limit
         return ratio, ratio * self._bits / spent, delay / ratio if ratio else math.inf
 
     def one_draw_per_frame(self, rts: float, cts: float, data: float, ack: float) -> tuple[float, float]:
@@ -120,9 +125,32 @@ class SaturatedLink:
         begun = rts * cts if self._rts_cts else 1.0
         arrived = begun * data
         done = arrived * ack
-        spent = 0.0
-        for i in range(self._limit):
-            mean = (1.0 - begun) * lost_rts + (begun - done) * lost_data + done * whole
-            spent += (1.0 - done) ** i * (self._timing.difs / 1000.0 + self._backoff_us(i) + mean)
-        ratio = 1.0 - (1.0 - arrived) ** self._limit
-        return ratio, ratio * self._bits / spent
+        mean = (1.0 - begun) * lost_rts + (begun - done) * lost_data + done * whole
+        spent = delivered = 0.0
+        counts = {(0, 0, False): 1.0}
+        failures = 0
+        while counts:
+            spent += sum(counts.values()) * (self._wait_us(failures) + mean)
+            failures += 1
+            after: dict[tuple[int, int, bool], float] = {}
+            for (short, long, has_arrived), weight in counts.items():
+                delivered += weight * done
+                after_cts = (0, long + 1) if self._rts_cts else (short + 1, 0)
+                for (shorts, longs), arrives, p in (
+                    ((short + 1, long), has_arrived, 1.0 - begun),
+                    (after_cts, has_arrived, begun - arrived),
+                    (after_cts, True, arrived - done),
+                ):
+                    if self._is_given_up(failures, shorts, longs):
+                        delivered += weight * p * arrives
+                    elif p > 0.0:
+                        key = shorts, longs, arrives
+                        after[key] = after.get(key, 0.0) + weight * p
+            counts = after
+        return delivered, delivered * self._bits / spent
+
+    def _is_given_up(self, attempts: int, short: int, long: int) -> bool:
+        limits = self._retries
+        if limits.single is not None:
+            return attempts >= limits.single
+        return short >= limits.short or long >= limits.long

@@ -5,12 +5,11 @@ neighbours pass on, may collide and are then lost. That is the standard's way, a
 on any single one: beacons come every period, requests are jittered and repeated.
 
 An undisturbed exchange is taken in three events instead of eight: every station senses both of its ends,
-no other emission is in progress, nobody is about to transmit, and it ends before the horizon. Its frames
-are judged as ever; only the gaps of a SIFS, in which nobody may transmit, are not played.
+no other emission is in progress, nobody is about to transmit or awaits a response for long, and it ends
+before the horizon. Its frames are judged as ever; only the gaps of a SIFS, in which nobody may transmit,
+are not played. With a receive threshold so low that bystanders may receive its frames with errors (EIFS)
+all is played.
 """
-
-from dataclasses import dataclass, field
-from typing import Protocol
 
 from onehop.contracts.ideal_link import ACK_BYTES, RTS_BYTES
 from onehop.contracts.messages import DeliveryStatus
@@ -18,42 +17,14 @@ from radio_proxy.core.addresses import EVERYONE, StationIndex
 from radio_proxy.core.airtime import Timing, delay_ns
 from radio_proxy.core.contention import Contention, Frame, Station
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.emission import Emission
 from radio_proxy.core.event_queue import EventQueue
-from radio_proxy.core.medium import Emission, Medium, Reservation
-
-Judgement = tuple[DeliveryStatus | None, float]
-"""What kept a frame from being received (None: nothing), and its SINR [dB]."""
-
-
-class Listener(Protocol):
-    """The layer above: what becomes of frames."""
-
-    def on_service(self, sender: StationIndex, frame: Frame, now: int) -> None: ...
-    def on_received(
-        self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int
-    ) -> None: ...
-    def on_broadcast_done(
-        self, sender: StationIndex, frame: Frame, emission: Emission, now: int
-    ) -> None: ...
-    def on_acknowledged(self, sender: StationIndex, frame: Frame, now: int) -> None: ...
-    def on_undeliverable(self, sender: StationIndex, frame: Frame, now: int) -> None: ...
-
-
-@dataclass(slots=True, eq=False)
-class Exchange:
-    """One attempt to send a frame. delay: of propagation [ns]; fade_db, emission: as in the medium.
-
-    undisturbed: nobody can interfere with it. judged: frames that were judged before they end.
-    """
-
-    sender: Station
-    receiver: Station
-    frame: Frame
-    delay: int
-    fade_db: float | None
-    emission: Emission
-    undisturbed: bool = False
-    judged: list[Judgement] = field(default_factory=list)
+from radio_proxy.core.exchange import Exchange, Listener
+from radio_proxy.core.link_rules import LinkRules
+from radio_proxy.core.medium import Medium
+from radio_proxy.core.nav import Reservation
+from radio_proxy.core.reception import PLCP
+from radio_proxy.core.retries import Retries
 
 
 class Dcf:
@@ -66,23 +37,20 @@ class Dcf:
         medium: Medium,
         draws: Draws,
         listener: Listener,
-        *,
-        retry_limit: int,
-        queue_frames: int,
-        rts_threshold_bytes: int,
-        fade_per_exchange: bool,
+        rules: LinkRules,
         take_shortcuts: bool = True,
     ) -> None:
         self.timing = timing
         self.medium = medium
+        self._judge = medium.receivers.judgement
         self._listener = listener
-        self._retry_limit = retry_limit
-        self._queue_frames = queue_frames
-        self._rts_threshold_bytes = rts_threshold_bytes
-        self._fade_per_exchange = fade_per_exchange
-        self._take_shortcuts = take_shortcuts
+        self._rules = rules
+        self._retries = Retries(rules)
+        self._take_shortcuts = take_shortcuts and medium.receivers.locks_are_certain
         self._stations = [Station(StationIndex(i)) for i in range(count)]
-        self._contention = Contention(timing, medium, draws)
+        self._latest_timeout = 0
+        self._listening: dict[Emission, list[Exchange]] = {}
+        self._contention = Contention(timing, medium, draws, rules)
         self.events = EventQueue(self._contention, self._on_access)
         self._at = self.events.at
 
@@ -95,7 +63,7 @@ class Dcf:
         """
         station = self._stations[index]
         waiting = len(station.urgent) + len(station.queue)
-        if waiting + (station.frame is not None) >= self._queue_frames:
+        if waiting + (station.frame is not None) >= self._rules.queue_frames:
             return False
         (station.urgent if frame.urgent else station.queue).append(frame)
         if station.frame is None:
@@ -111,6 +79,10 @@ class Dcf:
         self._stations[index] = Station(index)
         head = [] if station.frame is None else [station.frame]
         return [*head, *station.urgent, *station.queue]
+
+    def reassess(self, now: int) -> None:
+        """Find out again for whom the medium is busy."""
+        self._contention.reassess(now)
 
     def _serve(self, station: Station, now: int, force_backoff: bool) -> None:
         """The head of the queue comes into service; it waits out a backoff that is still running."""
@@ -128,25 +100,31 @@ class Dcf:
             self._contention.find_next()
             return
         frame.attempts += 1
-        fade_db = self.medium.fade_db() if self._fade_per_exchange else None
-        alone = not self.medium.emissions
-        emission = self._begin(station, fade_db, now)
-        alone = alone and self._contention.next_access > now + self.timing.turnaround
+        timing, rules, medium = self.timing, self._rules, self.medium
+        fade_db = medium.receivers.fade_db() if rules.fade_per_exchange else None
+        alone = not medium.emissions and self._latest_timeout < now + PLCP
+        row, receiver_index = medium.propagation.snr_row(station.index, now), frame.receiver
+        rts_cts = receiver_index != EVERYONE and frame.msdu_bytes > rules.rts_threshold_bytes
+        bits = 8 * (RTS_BYTES if rts_cts else timing.mac_header_bytes + frame.msdu_bytes)
+        at_basic_rate = rts_cts or receiver_index == EVERYONE
+        rate_mbps = timing.basic_rate_mbps if at_basic_rate else timing.rate_mbps
+        emission = Emission(station.index, receiver_index, rate_mbps, bits, row, fade_db, now)
+        self._begin(emission, now)
+        alone = alone and self._contention.next_access > now + timing.turnaround
         if frame.receiver == EVERYONE:
             delay = delay_ns(self.medium.propagation.farthest(station.index))
-            end = now + self.timing.broadcast(frame.msdu_bytes) + delay
+            end = now + timing.broadcast(frame.msdu_bytes) + delay
             exchange = Exchange(station, station, frame, delay, fade_db, emission)
             self._at(end, self._on_broadcast_end, exchange)
             return
         receiver = self._stations[frame.receiver]
         delay = self.medium.propagation.delay_ns(station.index, receiver.index)
         exchange = Exchange(station, receiver, frame, delay, fade_db, emission)
-        self._start(exchange, alone, now)
+        self._start(exchange, rts_cts, alone, now)
 
-    def _start(self, exchange: Exchange, alone: bool, now: int) -> None:
+    def _start(self, exchange: Exchange, rts_cts: bool, alone: bool, now: int) -> None:
         """Begin with RTS or data; an undisturbed exchange goes straight to the end of its data."""
         timing, frame = self.timing, exchange.frame
-        rts_cts = frame.msdu_bytes > self._rts_threshold_bytes
         before_data = timing.rts + timing.cts + 2 * (timing.sifs + exchange.delay) if rts_cts else 0
         data_end = now + before_data + timing.data(frame.msdu_bytes) + exchange.delay
         if alone and self._take_shortcuts:
@@ -164,162 +142,220 @@ class Dcf:
             end <= self.events.horizon
             and propagation.is_sensed_by_all(exchange.sender.index)
             and propagation.is_sensed_by_all(receiver)
-            and self.medium.reserved_until(receiver, now) <= now
+            and self.medium.nav.until(receiver, now) <= now
         )
 
     def _is_cleared(self, exchange: Exchange) -> bool:
         """Judge RTS and CTS of an undisturbed exchange in advance; if one fails, they are played out."""
-        rate_mbps = self.timing.basic_rate_mbps
-        emission, receiver, sender = exchange.emission, exchange.receiver.index, exchange.sender.index
-        rts = self.medium.receive(emission, receiver, rate_mbps, 8 * RTS_BYTES)
-        exchange.judged.append(rts)
-        if rts[0] is None:
-            row = self.medium.propagation.mean_snr_row(receiver)
-            response = Emission(receiver, row, exchange.fade_db)
-            cts = self.medium.receive(response, sender, rate_mbps, 8 * ACK_BYTES)
-            exchange.judged.append(cts)
-            if cts[0] is None:
-                exchange.judged.clear()
+        medium, rts, fade_db = self.medium, exchange.emission, exchange.fade_db
+        judge, rate_mbps = medium.receivers.judge_alone, rts.rate_mbps
+        receiver, sender = rts.receiver, rts.source
+        judged = judge(receiver, rts.row[receiver], fade_db, rate_mbps, rts.bits)
+        exchange.judged = (judged,)
+        if judged[0] is None:
+            mean_db = medium.propagation.mean_snr_row(receiver)[sender]
+            answer = judge(sender, mean_db, fade_db, rate_mbps, 8 * ACK_BYTES)
+            exchange.judged = (judged, answer)
+            if answer[0] is None:
+                exchange.judged = ()
+                self._on_cts(exchange)
+                rts.rate_mbps = self.timing.rate_mbps
+                rts.bits = 8 * (self.timing.mac_header_bytes + exchange.frame.msdu_bytes)
                 return True
         exchange.undisturbed = False
         return False
 
-    def _begin(self, station: Station, fade_db: float | None, now: int) -> Emission:
-        emission = self.medium.begin(station.index, fade_db, now)
+    def _begin(self, emission: Emission, now: int) -> None:
+        self.medium.begin(emission)
         self._contention.on_busy(emission, now)
-        return emission
 
-    def _end(self, emission: Emission, now: int, responder: StationIndex = EVERYONE) -> None:
-        """An emission ends. responder: who transmits the next frame of the exchange after a SIFS."""
-        self.medium.end(emission)
-        if responder == EVERYONE:
-            self._contention.on_idle(now)
-        else:
-            response = self.medium.propagation.snr_row(responder, now + self.timing.sifs)
-            self._contention.on_idle(now, response)
+    def _respond(
+        self, exchange: Exchange, responder: Station, rate_mbps: float, size_bytes: int, now: int
+    ) -> None:
+        """The next frame of an exchange begins."""
+        index = responder.index
+        ends = exchange.sender.index, exchange.receiver.index
+        row, bits = self.medium.propagation.snr_row(index, now), 8 * size_bytes
+        other = ends[0] if index == ends[1] else ends[1]
+        emission = Emission(index, other, rate_mbps, bits, row, exchange.fade_db, now)
+        exchange.emission = emission
+        self._begin(emission, now)
+
+    def _end(self, emission: Emission, now: int) -> None:
+        """An emission ends; `on_idle` must follow when it has been judged."""
+        errors = self.medium.end(emission, now)
+        if errors or self._contention.minds_errors:
+            erring = [self._stations[index] for index in errors]
+            self._contention.on_frame_end(emission, erring, now)
+        if self._listening:
+            for exchange in self._listening.pop(emission, ()):
+                self._on_timeout(exchange, now)
+
+    def _await_response(self, responder: Station, now: int) -> None:
+        """A frame has ended, and its addressee transmits the next one after a SIFS."""
+        response = self.medium.propagation.snr_row(responder.index, now + self.timing.sifs)
+        self._contention.on_idle(now, response)
 
     def _on_broadcast_end(self, exchange: Exchange, now: int) -> None:
         sender = exchange.sender
         self._end(exchange.emission, now)
+        self._contention.on_idle(now)
         if not sender.gone:
+            self._retries.on_broadcast(sender)
             frame = self._finish(sender, now)
             self._listener.on_broadcast_done(sender.index, frame, exchange.emission, now)
             self._serve_next(sender, now)
 
-    def _is_received(self, exchange: Exchange, at: Station, rate_mbps: float, size_bytes: int) -> bool:
-        """Judge the current frame at one end of the exchange; the cause of a loss is kept."""
+    def _is_received(self, exchange: Exchange, at: Station) -> bool:
+        """Judge the frame that has ended at one end of the exchange; the cause of a loss is kept."""
         frame = exchange.frame
         if exchange.sender.gone or exchange.receiver.gone:
             frame.cause = DeliveryStatus.RECEIVER_GONE
         elif exchange.judged:
-            frame.cause, frame.sinr_db = exchange.judged.pop(0)
+            (frame.cause, frame.sinr_db), *rest = exchange.judged
+            exchange.judged = tuple(rest)
         else:
-            judged = self.medium.receive(exchange.emission, at.index, rate_mbps, 8 * size_bytes)
-            frame.cause, frame.sinr_db = judged
+            frame.cause, frame.sinr_db = self._judge(exchange.emission, at.index)
         return frame.cause is None
 
-    def _reserve(self, exchange: Exchange, now: int, frames: int, airtime: int) -> Reservation:
+    def _reserve(self, exchange: Exchange, now: int, frames: int, airtime: int) -> Reservation | None:
         """The duration field: so many frames of so much airtime are still to come in this exchange."""
         until = now + frames * (self.timing.sifs + exchange.delay) + airtime
-        ends = exchange.sender.index, exchange.receiver.index
-        return self.medium.reserve(exchange.emission, *ends, until, now)
+        return self.medium.nav.reserve(exchange.emission, until, now)
 
     def _on_rts_end(self, exchange: Exchange, now: int) -> None:
         timing, receiver = self.timing, exchange.receiver
-        data = timing.data(exchange.frame.msdu_bytes)
-        received = self._is_received(exchange, receiver, timing.basic_rate_mbps, RTS_BYTES)
-        if received and self.medium.reserved_until(receiver.index, now) > now:
+        self._end(exchange.emission, now)
+        received = self._is_received(exchange, receiver)
+        if received and self.medium.nav.until(receiver.index, now) > now:
             exchange.frame.cause = DeliveryStatus.RECEIVER_BUSY
             received = False
-        reservation = self._reserve(exchange, now, 3, timing.cts + data + timing.ack)
+        data = timing.data(exchange.frame.msdu_bytes)
+        exchange.reservation = self._reserve(exchange, now, 3, timing.cts + data + timing.ack)
         if received:
             self._at(now + timing.sifs, self._send_cts, exchange)
-            self._end(exchange.emission, now, receiver.index)
+            self._await_response(receiver, now)
             return
-        self._end(exchange.emission, now)
-        self._at(now - exchange.delay + timing.response_timeout, self._on_timeout, exchange)
-        nav_reset = 2 * timing.sifs + timing.cts + 2 * timing.slot
-        self._at(now + nav_reset, self._on_nav_reset, reservation)
+        self._contention.on_idle(now)
+        self._await(exchange, now - exchange.delay + timing.response_timeout)
+        if exchange.reservation is not None:
+            self._watch_nav(exchange.reservation, now)
 
-    def _on_nav_reset(self, reservation: Reservation, now: int) -> None:
-        self.medium.reset_nav(reservation)
+    def _watch_nav(self, reservation: Reservation, rts_end: int) -> None:
+        """A bystander of an RTS that no data will follow resets its NAV (9.2.5.4)."""
+        timing = self.timing
+        nav_timeout = 2 * timing.sifs + timing.cts + 2 * timing.slot
+        if self._rules.as_ns3:
+            nav_timeout += timing.preamble
+        self.medium.nav.watch(reservation)
+        self._at(rts_end + nav_timeout, self._on_nav_timeout, reservation)
+
+    def _on_nav_timeout(self, reservation: Reservation, now: int) -> None:
+        self.medium.nav.reset(reservation, now)
         self._contention.on_nav_reset(now)
 
     def _send_cts(self, exchange: Exchange, now: int) -> None:
-        if self._continue(exchange, exchange.receiver, now):
-            self._at(now + self.timing.cts + exchange.delay, self._on_cts_end, exchange)
+        timing = self.timing
+        if self._continue(exchange, exchange.receiver, timing.basic_rate_mbps, ACK_BYTES, now):
+            self._at(now + timing.cts + exchange.delay, self._on_cts_end, exchange)
 
     def _on_cts_end(self, exchange: Exchange, now: int) -> None:
         timing, sender = self.timing, exchange.sender
-        received = self._is_received(exchange, sender, timing.basic_rate_mbps, ACK_BYTES)
+        self._end(exchange.emission, now)
+        received = self._is_received(exchange, sender)
         self._reserve(exchange, now, 2, timing.data(exchange.frame.msdu_bytes) + timing.ack)
         if received:
+            self._on_cts(exchange)
             self._at(now + timing.sifs, self._send_data, exchange)
-            self._end(exchange.emission, now, sender.index)
+            self._await_response(sender, now)
             return
-        self._end(exchange.emission, now)
+        self._contention.on_idle(now)
         rts_end = now - timing.cts - timing.sifs - 2 * exchange.delay
-        self._at(max(now, rts_end + timing.response_timeout), self._on_timeout, exchange)
+        self._await(exchange, max(now, rts_end + timing.response_timeout))
+        if exchange.reservation is not None:
+            exchange.reservation.later.append(exchange.emission)
+            self._watch_nav(exchange.reservation, rts_end + exchange.delay)
+
+    def _on_cts(self, exchange: Exchange) -> None:
+        exchange.after_cts = True
+        self._retries.on_cts(exchange.frame)
 
     def _send_data(self, exchange: Exchange, now: int) -> None:
-        if self._continue(exchange, exchange.sender, now):
-            end = now + self.timing.data(exchange.frame.msdu_bytes) + exchange.delay
-            self._at(end, self._on_data_end, exchange)
+        timing, msdu_bytes = self.timing, exchange.frame.msdu_bytes
+        size = timing.mac_header_bytes + msdu_bytes
+        if self._continue(exchange, exchange.sender, timing.rate_mbps, size, now):
+            self._at(now + timing.data(msdu_bytes) + exchange.delay, self._on_data_end, exchange)
 
     def _on_data_end(self, exchange: Exchange, now: int) -> None:
         timing, receiver, frame = self.timing, exchange.receiver, exchange.frame
-        size_bytes = timing.mac_header_bytes + frame.msdu_bytes
-        received = self._is_received(exchange, receiver, timing.rate_mbps, size_bytes)
+        self._end(exchange.emission, now)
+        received = self._is_received(exchange, receiver)
         if not exchange.undisturbed or not received:
             self._reserve(exchange, now, 1, timing.ack)
         if not received:
-            self._end(exchange.emission, now)
-            self._at(now - exchange.delay + timing.response_timeout, self._on_timeout, exchange)
+            self._contention.on_idle(now)
+            self._await(exchange, now - exchange.delay + timing.response_timeout)
             return
-        if exchange.undisturbed:
-            self.medium.end(exchange.emission)
-        else:
+        if not exchange.undisturbed:
             self._at(now + timing.sifs, self._send_ack, exchange)
-            self._end(exchange.emission, now, receiver.index)
+            self._await_response(receiver, now)
         if not frame.received:
             frame.received = True
             self._listener.on_received(receiver.index, exchange.sender.index, frame, now)
         if exchange.undisturbed:
-            exchange.emission = self._begin(receiver, exchange.fade_db, now)
+            self._respond(exchange, receiver, timing.basic_rate_mbps, ACK_BYTES, now)
             self._at(now + timing.sifs + timing.ack + exchange.delay, self._on_ack_end, exchange)
 
     def _send_ack(self, exchange: Exchange, now: int) -> None:
-        if self._continue(exchange, exchange.receiver, now):
-            self._at(now + self.timing.ack + exchange.delay, self._on_ack_end, exchange)
+        timing = self.timing
+        if self._continue(exchange, exchange.receiver, timing.basic_rate_mbps, ACK_BYTES, now):
+            self._at(now + timing.ack + exchange.delay, self._on_ack_end, exchange)
 
     def _on_ack_end(self, exchange: Exchange, now: int) -> None:
         timing, sender = self.timing, exchange.sender
-        received = self._is_received(exchange, sender, timing.basic_rate_mbps, ACK_BYTES)
         self._end(exchange.emission, now)
+        received = self._is_received(exchange, sender)
+        self._contention.on_idle(now)
         if not received:
             data_end = now - timing.ack - timing.sifs - 2 * exchange.delay
-            self._at(max(now, data_end + timing.response_timeout), self._on_timeout, exchange)
+            self._await(exchange, max(now, data_end + timing.response_timeout))
         elif not sender.gone:
+            sender.failures = 0
             frame = self._finish(sender, now)
             self._listener.on_acknowledged(sender.index, frame, now)
             self._serve_next(sender, now)
 
-    def _continue(self, exchange: Exchange, transmitter: Station, now: int) -> bool:
+    def _continue(
+        self, exchange: Exchange, transmitter: Station, rate_mbps: float, size_bytes: int, now: int
+    ) -> bool:
         """The next frame of an exchange, a SIFS after the last; False when its transmitter has left."""
         if transmitter.gone:
             exchange.frame.cause = DeliveryStatus.RECEIVER_GONE
-            self._at(now + self.timing.response_timeout, self._on_timeout, exchange)
+            self._await(exchange, now + self.timing.response_timeout)
             return False
-        exchange.emission = self._begin(transmitter, exchange.fade_db, now)
+        self._respond(exchange, transmitter, rate_mbps, size_bytes, now)
         return True
 
+    def _await(self, exchange: Exchange, until: int) -> None:
+        """The response did not come, which its sender knows only when its timer expires."""
+        self._latest_timeout = max(self._latest_timeout, until)
+        self._at(until, self._on_timeout, exchange)
+
     def _on_timeout(self, exchange: Exchange, now: int) -> None:
-        """No response: another attempt after a longer backoff, or the end of this frame."""
-        sender, frame = exchange.sender, exchange.frame
+        """No response: another attempt after a longer backoff, or the end of this frame.
+
+        A sender to which PHY-RXSTART was indicated waits for the end of that frame (9.2.5.7, 9.2.8).
+        """
+        sender, frame, medium = exchange.sender, exchange.frame, self.medium
+        if medium.emissions and not sender.gone:
+            heard = medium.receivers.receiving(sender.index, medium.emissions, now)
+            if heard is not None:
+                self._listening.setdefault(heard, []).append(exchange)
+                return
         if sender.gone:
             return
-        if frame.attempts < self._retry_limit:
-            self._contention.join(sender, frame.attempts, now)
+        if not self._retries.on_failure(sender, frame, exchange.after_cts):
+            self._contention.join(sender, now)
             return
         self._finish(sender, now)
         self._listener.on_undeliverable(sender.index, frame, now)
@@ -330,7 +366,7 @@ class Dcf:
         frame = station.frame
         assert frame is not None
         station.frame = None
-        self._contention.join(station, 0, now)
+        self._contention.join(station, now)
         return frame
 
     def _serve_next(self, station: Station, now: int) -> None:

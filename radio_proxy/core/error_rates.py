@@ -73,8 +73,8 @@ def bit_error_rate(rate_mbps: float, sinr_db: float) -> float:
     return -elementary.expm1(elementary.log1p(-min(cck11_symbol_error(sinr), 1.0 - 1e-15)) / 8.0)
 
 
-def frame_success(rate_mbps: float, sinr_db: float, bits: int) -> float:
-    """Probability that a frame of `bits` has no bit error."""
+def frame_success(rate_mbps: float, sinr_db: float, bits: float) -> float:
+    """Probability that a frame, or a stretch of one, of `bits` has no bit error."""
     if sinr_db >= CERTAIN_SINR_DB:
         return 1.0
     return elementary.exp(bits * elementary.log1p(-bit_error_rate(rate_mbps, sinr_db)))

@@ -17,8 +17,10 @@ from radio_proxy.core.data_message import DataPacket
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.emission import Emission
 from radio_proxy.core.error_rates import bit_error_rate
-from radio_proxy.core.medium import Emission, Medium
+from radio_proxy.core.link_rules import link_rules
+from radio_proxy.core.medium import Medium
 from radio_proxy.core.propagation import OWN_DB, Propagation
 from radio_proxy.core.routing.interface import Router
 
@@ -46,19 +48,15 @@ class LinkLayer:
         self._propagation = propagation
         self._deliveries = deliveries
         self._timing = dsss(section)
-        self._medium = Medium(propagation, draws)
-        self._dcf = Dcf(
-            len(robots),
-            self._timing,
-            self._medium,
-            draws,
-            self,
-            retry_limit=section.retry_limit,
-            queue_frames=section.queue_frames,
-            rts_threshold_bytes=section.rts_threshold_bytes,
-            fade_per_exchange=section.fading == "exchange",
-        )
+        rules = link_rules(section)
+        self._medium = Medium(propagation, draws, rules)
+        self._dcf = Dcf(len(robots), self._timing, self._medium, draws, self, rules)
         self.events = self._dcf.events
+
+    def on_placed(self, now: int) -> None:
+        """Robots moved and jams changed, so that the energy at a station did."""
+        if self._medium.detects_energy:
+            self._dcf.reassess(now)
 
     def attach(self, robot: RobotId, router: Router) -> None:
         """A robot's NIC comes up, with this routing protocol."""
@@ -142,7 +140,6 @@ class LinkLayer:
         self, sender: StationIndex, frame: Frame, emission: Emission, now: int
     ) -> None:
         packet = frame.packet
-        bits = 8 * (self._timing.mac_header_bytes + frame.msdu_bytes)
         rate_mbps = self._timing.basic_rate_mbps
         source = self._robots[sender]
         if not isinstance(packet, DataPacket):
@@ -150,7 +147,7 @@ class LinkLayer:
         for robot, router in self._routers.items():
             if robot == source:
                 continue
-            cause, sinr_db = self._medium.receive(emission, self._index[robot], rate_mbps, bits)
+            cause, sinr_db = self._medium.receivers.judgement(emission, self._index[robot])
             if isinstance(packet, DataPacket):
                 packet.message.sinr_db = sinr_db
                 packet.message.bit_error_rate = bit_error_rate(rate_mbps, sinr_db)

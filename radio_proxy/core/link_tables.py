@@ -14,6 +14,7 @@ from radio_proxy.core.airtime import dsss, printed_throughput_bps
 from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized, frame_probability
 from radio_proxy.core.error_rates import bit_error_rate, thesis_ber
 from radio_proxy.core.link_budget import link_budget
+from radio_proxy.core.link_rules import link_rules
 from radio_proxy.core.place_gains import place_gains_db
 from radio_proxy.core.propagation import OWN_DB, SILENT_DB
 from radio_proxy.core.saturation import Saturation, pair, ring
@@ -122,8 +123,7 @@ def _link_row(
     snr_db = budget.mean_snr_db(distance)
     size_bytes = timing.mac_header_bytes + msdu_bytes
     load = pair(distance, msdu_bytes, msdu_bytes > section.rts_threshold_bytes)
-    per_exchange = section.fading == "exchange"
-    tally = Saturation(load, timing, budget, seed, section.retry_limit, per_exchange).run(seconds)
+    tally = Saturation(load, timing, budget, seed, link_rules(section)).run(seconds)
     delivered = tally.delivered[0]
     ended = delivered + tally.given_up
     success = frame_probability(budget, snr_db, section.rate_mbps, size_bytes)
@@ -144,10 +144,9 @@ def _link_row(
 
 def _closed_form_bps(section: RadioSection, snr_db: float, msdu_bytes: int) -> float:
     """Throughput of one saturated sender by the sum over its attempts."""
-    budget, timing = link_budget(section), dsss(section)
-    rts_cts = msdu_bytes > section.rts_threshold_bytes
-    theory = SaturatedLink(timing, msdu_bytes, section.retry_limit, rts_cts)
-    size_bytes = timing.mac_header_bytes + msdu_bytes
+    budget, rts_cts = link_budget(section), msdu_bytes > section.rts_threshold_bytes
+    theory = SaturatedLink(dsss(section), msdu_bytes, link_rules(section).retries, rts_cts)
+    size_bytes = section.mac_header_bytes + msdu_bytes
     data = frame_probability(budget, snr_db, section.rate_mbps, size_bytes)
     if section.fading == "exchange":
         return 1e6 * theory.one_draw_per_exchange(data)[1]
@@ -163,9 +162,8 @@ def saturation_table(
     """`stations` of one cell that always have a message, without fading, for `seconds` of time."""
     timing = dsss(section)
     budget = link_budget(section).without_fading()
-    tally = Saturation(
-        ring(stations, msdu_bytes, rts_cts), timing, budget, seed, section.retry_limit
-    ).run(seconds)
+    load, rules = ring(stations, msdu_bytes, rts_cts), link_rules(section)
+    tally = Saturation(load, timing, budget, seed, rules).run(seconds)
     bits = 8.0 * msdu_bytes
     throughput_bps = bits * sum(tally.delivered) / seconds
     return SaturationTable(

@@ -111,6 +111,12 @@ class Propagation:
             for mean, gain in zip(row, gains, strict=True)
         ]
 
+    def noise_rise(self, station: StationIndex) -> float:
+        """Noise at a station above the floor in this tick, though nobody has transmitted yet [dB]."""
+        if self._stale:
+            self._place_robots()
+        return self.noise_rise_db[station]
+
     def delay_ns(self, a: StationIndex, b: StationIndex) -> int:
         """Propagation delay between two stations in this tick."""
         delay = self._delays.get((a, b))

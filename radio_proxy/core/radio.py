@@ -60,6 +60,7 @@ class Radio:
         start = truth.time_ns - self._period
         self._update_nics(truth, start)
         self._propagation.update(truth.present, truth.cuts, truth.jams, (start, truth.time_ns))
+        self._link.on_placed(start)
         self._requests = truth.transmit_requests
         talking = [request for request in truth.transmit_requests if request.outbox]
         if talking:

@@ -1,7 +1,7 @@
 """Saturated stations on the DCF that carries the missions: what theory is compared with."""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Presence
@@ -11,8 +11,10 @@ from radio_proxy.core.airtime import Timing
 from radio_proxy.core.contention import Frame
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.emission import Emission
 from radio_proxy.core.link_budget import LinkBudget
-from radio_proxy.core.medium import Emission, Medium
+from radio_proxy.core.link_rules import LinkRules
+from radio_proxy.core.medium import Medium
 from radio_proxy.core.propagation import Propagation
 
 SECOND = 1_000_000_000
@@ -59,8 +61,7 @@ class Saturation:
         timing: Timing,
         budget: LinkBudget,
         seed: int,
-        retry_limit: int,
-        fade_per_exchange: bool = False,
+        rules: LinkRules,
         take_shortcuts: bool = True,
     ) -> None:
         robots = tuple(RobotId(i) for i in range(1, len(load.places) + 1))
@@ -73,18 +74,9 @@ class Saturation:
         draws = Draws(generator(seed, "radio"))
         self._load = load
         self.tally = Tally([0] * len(load.receivers))
-        self._dcf = Dcf(
-            len(robots),
-            timing,
-            Medium(propagation, draws),
-            draws,
-            self,
-            retry_limit=retry_limit,
-            queue_frames=2,
-            rts_threshold_bytes=0 if load.rts_cts else load.msdu_bytes,
-            fade_per_exchange=fade_per_exchange,
-            take_shortcuts=take_shortcuts,
-        )
+        rules = replace(rules, rts_threshold_bytes=0 if load.rts_cts else load.msdu_bytes)
+        medium = Medium(propagation, draws, rules)
+        self._dcf = Dcf(len(robots), timing, medium, draws, self, rules, take_shortcuts)
         for sender in range(len(load.receivers)):
             self._refill(StationIndex(sender), 0)
 

@@ -3,15 +3,18 @@
 import math
 
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.messages import Cut, Presence
+from onehop.contracts.messages import Cut, DeliveryStatus, Presence
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.randomness import generator
+from radio_proxy.core.addresses import StationIndex
 from radio_proxy.core.airtime import Timing, dsss
 from radio_proxy.core.contention import Frame
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.emission import Emission
 from radio_proxy.core.link_budget import LinkBudget, link_budget
-from radio_proxy.core.medium import Emission, Medium
+from radio_proxy.core.link_rules import link_rules
+from radio_proxy.core.medium import Medium
 from radio_proxy.core.propagation import Propagation
 
 
@@ -40,10 +43,17 @@ def fhss(window: int, stages: int) -> Timing:
 
 
 class Cell:
-    """Stations at given places on the event engine, whose frames are handed over at given times."""
+    """Stations at given places on the event engine, whose frames are handed over at given times.
+
+    statuses: of broadcasts, by sender and receiver; None is received.
+    """
 
     def __init__(
-        self, places: list[tuple[float, float]], section: RadioSection, cuts: tuple[Cut, ...] = ()
+        self,
+        places: list[tuple[float, float]],
+        section: RadioSection,
+        cuts: tuple[Cut, ...] = (),
+        take_shortcuts: bool = True,
     ) -> None:
         robots = tuple(range(1, len(places) + 1))
         propagation = Propagation(link_budget(section), robots, ())
@@ -54,19 +64,13 @@ class Cell:
         ]
         propagation.update(tuple(presences), cuts, ())
         draws = Draws(generator(1, "radio"))
-        self.dcf = Dcf(
-            len(robots),
-            dsss(section),
-            Medium(propagation, draws),
-            draws,
-            self,
-            retry_limit=section.retry_limit,
-            queue_frames=section.queue_frames,
-            rts_threshold_bytes=section.rts_threshold_bytes,
-            fade_per_exchange=False,
-        )
+        rules = link_rules(section)
+        medium = Medium(propagation, draws, rules)
+        self.dcf = Dcf(len(robots), dsss(section), medium, draws, self, rules, take_shortcuts)
+        self.statuses: dict[tuple[int, int], DeliveryStatus | None] = {}
         self.arrived: list[tuple[int, int, Frame]] = []
         self.given_up: list[Frame] = []
+        self.given_up_at: list[int] = []
 
     def send_at(
         self, time_us: float, sender: int, receiver: int, msdu_bytes: int = 800, urgent: bool = False
@@ -89,11 +93,16 @@ class Cell:
     def on_received(self, receiver: int, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
         self.arrived.append((now, sender, frame))
 
-    def on_broadcast_done(self, sender: int, frame: Frame, emission: Emission, now: int) -> None:  # noqa: ARG002
+    def on_broadcast_done(self, sender: int, frame: Frame, emission: Emission, now: int) -> None:
         self.arrived.append((now, sender, frame))
+        for station in range(len(emission.row)):
+            if station != sender:
+                cause, _ = self.dcf.medium.receivers.judgement(emission, StationIndex(station))
+                self.statuses[sender, station] = cause
 
     def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:
         """Nothing to note."""
 
     def on_undeliverable(self, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
         self.given_up.append(frame)
+        self.given_up_at.append(now)

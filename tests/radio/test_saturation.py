@@ -6,12 +6,14 @@ from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.airtime import Timing, dsss
 from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized
 from radio_proxy.core.link_budget import link_budget
+from radio_proxy.core.link_rules import LinkRules, RetryLimits
 from radio_proxy.core.saturation import Saturation, pair, ring
 from tests.radio.stations import fhss, threshold_probability
 
 STILL = link_budget(RadioSection(shadowing_db=0.0))
 FADED = link_budget(RadioSection())
-PATIENT = 1000
+THESIS = LinkRules()
+PATIENT = LinkRules(retries=RetryLimits(single=1000))
 """Attempts before a frame is given up where theory knows no limit."""
 
 
@@ -61,9 +63,9 @@ def test_six_stations_share_the_cell_evenly() -> None:
 def test_fading_per_frame_is_within_3_percent_of_the_closed_form(distance: float) -> None:
     p = threshold_probability(FADED, FADED.mean_snr_db(distance))
     timing = dsss(RadioSection())
-    ratio, expected = SaturatedLink(timing, 800, 7).one_draw_per_frame(p, p, p, p)
+    ratio, expected = SaturatedLink(timing, 800, THESIS.retries).one_draw_per_frame(p, p, p, p)
     seconds = 120.0
-    tally = Saturation(pair(distance, 800, True), timing, FADED, 1, 7).run(seconds)
+    tally = Saturation(pair(distance, 800, True), timing, FADED, 1, THESIS).run(seconds)
     assert tally.delivered[0] * 6400 / (seconds * 1e6) == pytest.approx(expected, rel=0.03)
     delivered = tally.delivered[0]
     assert delivered / (delivered + tally.given_up) == pytest.approx(ratio, abs=0.03)
@@ -74,8 +76,10 @@ def test_fading_per_frame_is_within_3_percent_of_the_closed_form(distance: float
 def test_fading_per_exchange_is_within_3_percent_of_the_closed_form(distance: float) -> None:
     p = threshold_probability(FADED, FADED.mean_snr_db(distance))
     timing = dsss(RadioSection(cts_timeout_us=334.0))
-    expected = SaturatedLink(timing, 800, 7).one_draw_per_exchange(p)[1]
-    tally = Saturation(pair(distance, 800, True), timing, FADED, 1, 7, fade_per_exchange=True).run(120.0)
+    expected = SaturatedLink(timing, 800, THESIS.retries).one_draw_per_exchange(p)[1]
+    tally = Saturation(
+        pair(distance, 800, True), timing, FADED, 1, LinkRules(fade_per_exchange=True)
+    ).run(120.0)
     assert tally.delivered[0] * 6400 / 120e6 == pytest.approx(expected, rel=0.03)
 
 
@@ -99,14 +103,14 @@ def test_one_flow_is_near_what_ns3_measured(distance: float, measured: float) ->
     Within 4 % to 12 m; farther out ns-3 forgives more (it counts the retries of RTS and data apart).
     """
     timing = dsss(RadioSection(mac_header_bytes=28))
-    tally = Saturation(pair(float(distance), 800, True), timing, FADED, 1, 7).run(120.0)
+    tally = Saturation(pair(float(distance), 800, True), timing, FADED, 1, THESIS).run(120.0)
     throughput = tally.delivered[0] * 6400 / 120e6
     assert throughput == pytest.approx(measured, rel=0.04 if distance <= 12 else 0.13)
 
 
 def test_same_seed_same_tally() -> None:
     tallies = [
-        Saturation(ring(5, 800, True), dsss(RadioSection()), FADED, seed, 7).run(2.0)
+        Saturation(ring(5, 800, True), dsss(RadioSection()), FADED, seed, THESIS).run(2.0)
         for seed in (4, 4, 5)
     ]
     assert tallies[0] == tallies[1] != tallies[2]
