@@ -12,6 +12,7 @@ from radio_proxy.core.airtime import Timing
 from radio_proxy.core.error_rates import frame_success
 from radio_proxy.core.link_budget import LinkBudget
 from radio_proxy.core.link_rules import RetryLimits
+from radio_proxy.core.reception import HEADER_BITS, HEADER_RATE_MBPS
 
 
 def bianchi_tau(stations: int, window: int, stages: int) -> tuple[float, float]:
@@ -55,10 +56,14 @@ def bianchi_normalized(
 
 
 def frame_probability(budget: LinkBudget, snr_db: float, rate_mbps: float, size_bytes: int) -> float:
-    """P(a frame gets through) at a mean SNR, over the fading: threshold and bit errors."""
+    """P(a frame gets through) at a mean SNR, over the fading: threshold, PLCP header and bit errors."""
+
+    def through(sinr_db: float) -> float:
+        header = frame_success(HEADER_RATE_MBPS, sinr_db, HEADER_BITS)
+        return header * frame_success(rate_mbps, sinr_db, 8 * size_bytes)
+
     if budget.shadowing_db == 0.0:
-        through = frame_success(rate_mbps, snr_db, 8 * size_bytes)
-        return through if snr_db >= budget.receive_threshold_db else 0.0
+        return through(snr_db) if snr_db >= budget.receive_threshold_db else 0.0
     steps, span = 2000, 8.0
     total = weight = 0.0
     for k in range(steps):
@@ -67,7 +72,7 @@ def frame_probability(budget: LinkBudget, snr_db: float, rate_mbps: float, size_
         weight += density
         faded = snr_db + budget.shadowing_db * z
         if faded >= budget.receive_threshold_db:
-            total += density * frame_success(rate_mbps, faded, 8 * size_bytes)
+            total += density * through(faded)
     return total / weight
 
 
