@@ -67,10 +67,11 @@ def test_a_frame_without_errors_ends_an_eifs() -> None:
 def reserved(frames: list[tuple[float, int, int]], late_us: float, as_ns3: bool = False) -> bool:
     """Whether the NAV of station 3 is set at a time, after frames (start [us], sender, receiver).
 
-    3 hears 0 and 2; 0 and 2 do not hear each other; 1, who is out of everyone's reach, never answers.
+    3 hears 0 and 2 alike, 4 hears 0 better; 0 and 2 do not hear each other; 1, who is out of everyone's
+    reach, never answers.
     """
-    places: Places = [(0, 0), (300, 0), (10, 0), (5, 0)]
-    section = RadioSection(shadowing_db=0.0, retry_limit=1, as_ns3=as_ns3)
+    places: Places = [(0, 0), (300, 0), (10, 0), (5, 0), (1, 0)]
+    section = RadioSection(shadowing_db=0.0, retry_limit=1, as_ns3=as_ns3, preamble_sinr_db=4.0)
     cell = Cell(places, section, (Cut((1,), (3,)),))
     for start_us, sender, receiver in frames:
         cell.send_at(start_us - 50, sender, receiver)
