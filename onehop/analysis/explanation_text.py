@@ -19,7 +19,7 @@ WHY_LOST = {
     DeliveryStatus.BELOW_THRESHOLD: "the signal was too weak: distance, a wall, a cut link or a jammer",
     DeliveryStatus.BIT_ERRORS: "received, but with bit errors",
     DeliveryStatus.COLLISION: "another frame was sent at the same time and drowned it",
-    DeliveryStatus.RECEIVER_BUSY: "the receiver was sending, receiving another frame, or silenced (NAV)",
+    DeliveryStatus.RECEIVER_BUSY: "the receiver was busy with another frame, or reserved (NAV)",
     DeliveryStatus.NO_ROUTE: "no route through the team was found",
     DeliveryStatus.QUEUE_FULL: "the queue of the robot that was to send it was full",
     DeliveryStatus.RECEIVER_GONE: "the receiver has left the mission",

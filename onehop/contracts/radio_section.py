@@ -34,12 +34,12 @@ class RadioSection:
     fading: a new draw for each "frame", or one for each "exchange". wall_loss_db: per wall crossed.
     rate_mbps: of data frames. rts_threshold_bytes: longer MSDUs are sent with RTS/CTS (2304: never).
     mac_header_bytes: 34 in the thesis's sums, 28 with three addresses.
-    retry_limit: attempts of one frame in all, 7 in the thesis. None with preset "physical" or with
-        short_retry_limit or long_retry_limit: as in 802.11-1999, 9.2.5.3, so many failures without and
-        with a CTS before (None: 7 and 4).
+    retry_limit: attempts of one frame in all (None: 7 with preset "thesis" or as_ns3); or, if it is not
+        that, short_retry_limit and long_retry_limit: failures without and after a CTS (802.11-1999,
+        9.2.5.3; None: 7 and 4).
     as_ns3: read the standard as ns-3 3.44 does where it differs (docs/radio-model.md).
-    cts_timeout_us: from the end of a frame until its answer is
-        given up (SIFS + slot + preamble; 334 in the standard of 1999).
+    cts_timeout_us: from the end of a frame until its answer is given up (SIFS + slot + preamble; 334 in
+        the standard of 1999).
     queue_frames: bound of the queue of a NIC; a frame that finds it full is dropped.
     routing: "direct" (one hop only), "mrsr" (on DSR) or "mrdv" (on AODV).
     gamma_distance: remaining distance per unit of gamma in p_r = min(1, (1/v)^gamma) [m].

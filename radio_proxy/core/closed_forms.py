@@ -12,6 +12,7 @@ from radio_proxy.core.airtime import Timing
 from radio_proxy.core.error_rates import frame_success
 from radio_proxy.core.link_budget import LinkBudget
 from radio_proxy.core.link_rules import RetryLimits
+from radio_proxy.core.reception import HEADER_BITS, HEADER_RATE_MBPS
 
 FADED_STEP = 0.0625
 """Faded SNRs are rounded to multiples of it: error rates of CCK take milliseconds each [dB]."""
@@ -58,10 +59,14 @@ def bianchi_normalized(
 
 
 def frame_probability(budget: LinkBudget, snr_db: float, rate_mbps: float, size_bytes: int) -> float:
-    """P(a frame gets through) at a mean SNR, over the fading: threshold and bit errors."""
+    """P(a frame gets through) at a mean SNR, over the fading: threshold, PLCP header and bit errors."""
+
+    def through(sinr_db: float) -> float:
+        header = frame_success(HEADER_RATE_MBPS, sinr_db, HEADER_BITS)
+        return header * frame_success(rate_mbps, sinr_db, 8 * size_bytes)
+
     if budget.shadowing_db == 0.0:
-        through = frame_success(rate_mbps, snr_db, 8 * size_bytes)
-        return through if snr_db >= budget.receive_threshold_db else 0.0
+        return through(snr_db) if snr_db >= budget.receive_threshold_db else 0.0
     steps, span = 2000, 8.0
     total = weight = 0.0
     for k in range(steps):
@@ -71,7 +76,7 @@ def frame_probability(budget: LinkBudget, snr_db: float, rate_mbps: float, size_
         faded = snr_db + budget.shadowing_db * z
         if faded >= budget.receive_threshold_db:
             rounded = round(faded / FADED_STEP) * FADED_STEP
-            total += density * frame_success(rate_mbps, rounded, 8 * size_bytes)
+            total += density * through(rounded)
     return total / weight
 
 

@@ -64,13 +64,15 @@ def test_a_frame_without_errors_ends_an_eifs() -> None:
     assert (began_us - ends_us[2]) % 20 == pytest.approx(10, abs=0.1)
 
 
-def reserved(frames: list[tuple[float, int, int]], late_us: float) -> bool:
+def reserved(frames: list[tuple[float, int, int]], late_us: float, as_ns3: bool = False) -> bool:
     """Whether the NAV of station 3 is set at a time, after frames (start [us], sender, receiver).
 
-    3 hears 0 and 2; 0 and 2 do not hear each other; 1, who is out of everyone's reach, never answers.
+    3 hears 0 and 2 alike, 4 hears 0 better; 0 and 2 do not hear each other; 1, who is out of everyone's
+    reach, never answers.
     """
-    places: Places = [(0, 0), (300, 0), (10, 0), (5, 0)]
-    cell = Cell(places, RadioSection(shadowing_db=0.0, retry_limit=1), (Cut((1,), (3,)),))
+    places: Places = [(0, 0), (300, 0), (10, 0), (5, 0), (1, 0)]
+    section = RadioSection(shadowing_db=0.0, retry_limit=1, as_ns3=as_ns3, preamble_sinr_db=4.0)
+    cell = Cell(places, section, (Cut((1,), (3,)),))
     for start_us, sender, receiver in frames:
         cell.send_at(start_us - 50, sender, receiver)
     cell.run(late_us)
@@ -90,6 +92,8 @@ def test_the_nav_of_an_rts_is_reset_unless_another_frame_begins() -> None:
     """9.2.5.4: after 2 SIFS, CTS and 2 slots, 364 us; ns-3 waits for a header more."""
     assert reserved([(100, 0, 1)], 452 + 362)
     assert not reserved([(100, 0, 1)], 452 + 367)
+    assert reserved([(100, 0, 1)], 452 + 192 + 362, as_ns3=True)
+    assert not reserved([(100, 0, 1)], 452 + 192 + 367, as_ns3=True)
     assert reserved([(100, 0, 1), (452 + 100, 2, 1)], 452 + 367)
     assert not reserved([(100, 0, 1), (452 + 200, 2, 1)], 452 + 367)
 

@@ -1,5 +1,7 @@
 """The whole radio under random traffic, movement and faults: its promises hold after every tick."""
 
+from typing import Any
+
 import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
@@ -18,6 +20,18 @@ from tests.radio.missions import PERIOD, Mission, Outboxes, message
 
 ROBOTS = 5
 robots = st.integers(1, ROBOTS)
+rules = st.sampled_from(
+    [
+        {},
+        {"as_ns3": True},
+        {"preset": "physical", "rts_threshold_bytes": 100},
+        {"capture_db": 6.0, "preamble_sinr_db": 4.0, "rts_threshold_bytes": 2304},
+        {"receive_threshold_db": 5.0, "carrier_sense_db": 5.0, "rate_mbps": 11.0},
+        {"energy_detect_db": 25.0, "short_retry_limit": 3, "fading": "exchange"},
+    ]
+)
+"""Keys of the radio section: rules of reception and contention."""
+
 place = st.tuples(st.integers(0, 60), st.integers(0, 20))
 TICKS_TO_SETTLE = 1000
 """50 s: longer than two discoveries of MRDV (21.5 s each) or the send buffer of MRSR (30 s)."""
@@ -28,9 +42,11 @@ class RadioMachine(RuleBasedStateMachine):
 
     routing = ""
 
-    @initialize(spots=st.lists(place, min_size=ROBOTS, max_size=ROBOTS), seed=st.integers(0, 99))
-    def begin(self, spots: list[tuple[int, int]], seed: int) -> None:
-        self.section = RadioSection(routing=self.routing, queue_frames=4)  # type: ignore[arg-type]
+    @initialize(
+        spots=st.lists(place, min_size=ROBOTS, max_size=ROBOTS), seed=st.integers(0, 99), keys=rules
+    )
+    def begin(self, spots: list[tuple[int, int]], seed: int, keys: dict[str, Any]) -> None:
+        self.section = RadioSection(routing=self.routing, queue_frames=4, **keys)  # type: ignore[arg-type]
         places = {i: (float(x), float(y)) for i, (x, y) in enumerate(spots, 1)}
         self.mission = Mission(places, self.section, seed)
         self.pending: Outboxes = {}
@@ -113,8 +129,18 @@ class RadioMachine(RuleBasedStateMachine):
             keys = [(reception.arrival_ns, reception.source) for reception in inbox.receptions]
             assert keys == sorted(keys)
 
+    @invariant()
+    def receivers_are_locked_on_frames_in_progress_that_others_sent(self) -> None:
+        medium = self.mission.radio._link._medium
+        for station, emission in medium.receivers._locked_on.items():
+            assert emission in medium.emissions
+            assert station != emission.source
+            assert all(other.source != station for other in medium.emissions)
+
     def teardown(self) -> None:
         self.step(1)
+        if self.section.energy_detect_db is not None:
+            self.heal()
         for _ in range(TICKS_TO_SETTLE):
             self.check(self.mission.step())
         ended = {(source, number) for source, number, _ in self.settled}

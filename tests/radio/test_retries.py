@@ -82,6 +82,12 @@ def test_limits_of_a_scenario(keys: dict[str, object], limits: RetryLimits) -> N
     assert list(section.problems()) == []
 
 
+def test_in_ns3_all_energy_is_held_against_carrier_sense() -> None:
+    assert link_rules(RadioSection()).energy_detect_db is None
+    assert link_rules(RadioSection(as_ns3=True, carrier_sense_db=26.0)).energy_detect_db == 26.0
+    assert link_rules(RadioSection(as_ns3=True, energy_detect_db=40.0)).energy_detect_db == 40.0
+
+
 def test_one_limit_and_two_are_not_set_together() -> None:
     section = RadioSection(retry_limit=7, long_retry_limit=4)
     assert [problem.key for problem in section.problems()] == ["long_retry_limit"]
