@@ -103,6 +103,17 @@ class DataPacket:
     route: tuple[RobotId, ...] = ()
     salvaged: int = 0
 
+    def named_beyond(self, next_hop: RobotId) -> tuple[RobotId, ...]:
+        """Whom it names of those that it comes to after its next hop.
+
+        All of them with a source route, and without one the destination alone.
+        """
+        if next_hop == self.message.destination:
+            return ()
+        if not self.route:
+            return (self.message.destination,)
+        return self.route[self.route.index(next_hop) + 1 :]
+
     def tried(self, attempts: int) -> "DataPacket":
         """The same copy after that many attempts at the next hop."""
         tried = (*self.attempts, attempts)

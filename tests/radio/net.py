@@ -67,7 +67,7 @@ class NetNic:
 class Net:
     """Robots, the links among them, and everything that was sent. protocol: "mrdv" or "mrsr".
 
-    hold_ns: how long a packet waits in its queue.
+    hold_ns: how long a packet waits in its queue. margin_db: how far above the threshold one is heard.
     """
 
     def __init__(self, protocol: str, robots: Iterable[int], links: Iterable[tuple[int, int]]) -> None:
@@ -77,6 +77,7 @@ class Net:
         self.speed = 0.0
         self.remaining = 0.0
         self.loss: Callable[[int, int], bool] = lambda _sender, _receiver: False
+        self.margin_db: Callable[[int, int], float] = lambda _sender, _receiver: 20.0
         self.watch: Callable[[], None] = lambda: None
         self.hold_ns = 0
         self.links = {frozenset(link) for link in links}
@@ -153,6 +154,7 @@ class Net:
                 nic.router.on_broadcast_sent(packet, now)
             for robot in sorted(self.nics):
                 if self.linked(nic.robot, robot) and not self.loss(nic.robot, robot):
+                    self.hear(nic.robot, robot)
                     self.nics[robot].router.on_packet(packet, nic.robot, now)
             return
         reached = nic.alive and self.linked(nic.robot, target) and not self.loss(nic.robot, target)
@@ -169,14 +171,22 @@ class Net:
             failed = packet.tried(7) if isinstance(packet, DataPacket) else packet
             nic.router.on_undeliverable(failed, target, DeliveryStatus.BELOW_THRESHOLD, now)
 
+    def hear(self, sender: int, receiver: int) -> None:
+        """A frame has come from one to the other."""
+        self.nics[receiver].router.on_heard(sender, self.margin_db(sender, receiver), self.now)
+
     def _receive(self, nic: NetNic, packet: object, target: int, now: int) -> None:
+        self.hear(nic.robot, target)
+        named: Iterable[int] = sorted(self.nics)
+        if isinstance(packet, DataPacket):
+            named = packet.named_beyond(target)
+        for robot in named:
+            if robot != target and self.linked(nic.robot, robot):
+                self.hear(nic.robot, robot)
+                self.nics[robot].router.on_overheard(packet, nic.robot, now)
         if isinstance(packet, DataPacket):
             packet.message.copies += 1
             packet = packet.moved(target, 1)
-        else:
-            for robot in sorted(self.nics):
-                if robot != target and self.linked(nic.robot, robot):
-                    self.nics[robot].router.on_overheard(packet, nic.robot, now)
         self.nics[target].router.on_packet(packet, nic.robot, now)
 
 

@@ -108,6 +108,9 @@ class MrdvRouter:
             self._report_broken(self.table.apply_rerr(sender, packet.lost, now), now)
         self._send_buffered(sender, now)
 
+    def on_heard(self, neighbour: RobotId, margin_db: float, now: int) -> None:
+        """How well others are heard says nothing that this protocol uses."""
+
     def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
         """Others' control packets say nothing that this protocol uses."""
 

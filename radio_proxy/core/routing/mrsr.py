@@ -1,14 +1,15 @@
 """MRSR: DSR (RFC 4728) whose ROUTE REQUESTs are passed on with a probability (thesis 3.7.2).
 
-Left out, as the RFC allows: flow state, automatic route shortening, piggybacking. Route maintenance is
-the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
+Left out, as the RFC allows: flow state, piggybacking. Route maintenance is the link layer's
+acknowledgement (8.3.1): a packet that it gives up is handed to it again (links.py).
 
 Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
 flag for normal forwarding. The source discovers a route for a message twice at most, and its time in the
 send buffer counts from when it was handed over. A robot that waits to reply out of its cache listens for
 others' replies, not for the origin's first data (8.2.5), and routes are learnt from others' replies and
-errors but not from their data (3.3.1), because control packets are the only frames of others that a NIC
-hands up here. A target replies to the copies of a request that came no farther than the first one,
+errors but not from their data (3.3.1), because a NIC hands up others' data here only to those that it is
+still to come to. A link on which something was overheard is taken for one if it is worthwhile (links.py);
+3.3.1 and 3.4.3 leave that open. A target replies to the copies of a request that came no farther than the first one,
 because in one cell every neighbour passes one on.
 """
 
@@ -19,6 +20,7 @@ from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import MAX_DISCOVERIES, DataPacket
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
 from radio_proxy.core.routing.interface import NicServices
+from radio_proxy.core.routing.links import Links
 from radio_proxy.core.routing.mrsr_cache import RouteCache
 from radio_proxy.core.routing.mrsr_packets import (
     Rerr,
@@ -28,6 +30,7 @@ from radio_proxy.core.routing.mrsr_packets import (
     source_route_bytes,
     without_loops,
 )
+from radio_proxy.core.routing.mrsr_shortening import GratuitousReplies
 
 MS = 1_000_000
 """Nanoseconds in a millisecond."""
@@ -83,6 +86,8 @@ class MrsrRouter:
         self.cache = RouteCache(nic.robot)
         self._nic = nic
         self._me = nic.robot
+        self._links = Links()
+        self._gratuitous = GratuitousReplies(nic.robot)
         self._gamma_distance = gamma_distance
         self._number = nic.incarnation << 16
         self._discoveries: dict[RobotId, RouteDiscovery] = {}
@@ -118,21 +123,32 @@ class MrsrRouter:
             if packet.back[-1] != self._me:
                 self._nic.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
 
+    def on_heard(self, neighbour: RobotId, margin_db: float, now: int) -> None:
+        self._links.on_heard(neighbour, margin_db, now)
+
     def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
-        """Others' replies and errors teach as one's own do (RFC 4728, 3.3.1).
+        """Others' replies and errors teach as one's own do (RFC 4728, 3.3.1), their data shortens routes.
 
         A reply that is as short as the one that waits here makes that one needless (8.2.5).
         """
+        if isinstance(packet, Rerr):
+            self.cache.remove_link(packet.a, packet.b)
+            return
         if isinstance(packet, Rrep):
             mine = self._pending_replies.get((packet.found[0], packet.number))
             if mine is not None and len(packet.found) <= mine:
                 del self._pending_replies[packet.found[0], packet.number]
+        if not self._links.is_worthwhile(sender, now):
+            return
+        if isinstance(packet, Rrep):
             here = packet.found.index(sender)
             self.cache.add((self._me, *packet.found[here:]), now)
             self.cache.add((self._me, *packet.found[here::-1]), now)
             self._send_buffered(now)
-        elif isinstance(packet, Rerr):
-            self.cache.remove_link(packet.a, packet.b)
+        elif isinstance(packet, DataPacket):
+            reply = self._gratuitous.reply_to(packet, sender, now)
+            if reply is not None:
+                self._send_rrep(reply, now)
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:
         """The timeout of a request counts from its transmission."""
@@ -142,7 +158,10 @@ class MrsrRouter:
                 self._nic.at(now + discovery.timeout, self._request_route, discovery)
 
     def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:
-        """A confirmed link needs no mark: a path holds until it fails or is too old."""
+        """The link holds; a reply has come a hop of the way that it takes (RFC 4728, 8.1.4)."""
+        self._links.on_acknowledged(next_hop)
+        if isinstance(packet, Rrep):
+            self._cache_route(packet.back, now)
 
     def on_undeliverable(
         self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
