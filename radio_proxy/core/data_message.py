@@ -1,6 +1,6 @@
 """A data message on its way from robot to robot, and what is on record about it until its verdict."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from onehop.contracts.messages import DeliveryStatus, Verdict
 from radio_proxy.core.addresses import RobotId
@@ -95,6 +95,7 @@ class DataPacket:
     """A copy of a message that one robot holds, never changed. path, attempts: how it came there.
 
     route, salvaged: the source route that it carries and how often it was salvaged (MRSR).
+    given_up: attempts of each time that the link to its next hop gave it up.
     """
 
     message: DataMessage
@@ -102,6 +103,7 @@ class DataPacket:
     attempts: tuple[int, ...] = ()
     route: tuple[RobotId, ...] = ()
     salvaged: int = 0
+    given_up: tuple[int, ...] = ()
 
     def named_beyond(self, next_hop: RobotId) -> tuple[RobotId, ...]:
         """Whom it names of those that it comes to after its next hop.
@@ -115,11 +117,20 @@ class DataPacket:
         return self.route[self.route.index(next_hop) + 1 :]
 
     def tried(self, attempts: int) -> "DataPacket":
-        """The same copy after that many attempts at the next hop."""
-        tried = (*self.attempts, attempts)
-        return DataPacket(self.message, self.path, tried, self.route, self.salvaged)
+        """The same copy after that many more attempts at the next hop."""
+        tried = (*self.attempts, sum(self.given_up) + attempts)
+        return DataPacket(self.message, self.path, tried, self.route, self.salvaged, self.given_up)
+
+    def again(self) -> "DataPacket":
+        """A copy that its link gave up, as it is handed to the same link once more."""
+        given_up = (*self.given_up, self.attempts[-1] - sum(self.given_up))
+        return replace(self, attempts=self.attempts[:-1], given_up=given_up)
+
+    def afresh(self) -> "DataPacket":
+        """A copy that its link gave up, as if nothing had been tried from here."""
+        return replace(self, attempts=self.attempts[:-1], given_up=())
 
     def moved(self, holder: RobotId, attempts: int) -> "DataPacket":
-        """The copy that the next robot holds."""
-        path, tried = (*self.path, holder), (*self.attempts, attempts)
+        """The copy that the next robot holds, after that many more attempts."""
+        path, tried = (*self.path, holder), (*self.attempts, sum(self.given_up) + attempts)
         return DataPacket(self.message, path, tried, self.route, self.salvaged)

@@ -14,6 +14,7 @@ from onehop.contracts.messages import (
 )
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.randomness import generator
+from onehop.contracts.units import nanoseconds
 from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.deliveries import Deliveries
@@ -126,5 +127,5 @@ def _router(nic: NicServices, section: RadioSection, now: int) -> Router:
     if section.routing == "mrsr":
         return MrsrRouter(nic, section.gamma_distance)
     if section.routing == "mrdv":
-        return MrdvRouter(nic, section.gamma_distance, now)
+        return MrdvRouter(nic, section.gamma_distance, now, nanoseconds(section.hello_s))
     return DirectRouter(nic)

@@ -9,6 +9,7 @@ from typing import Any
 from onehop.contracts.messages import BROADCAST, DeliveryStatus
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.routing.interface import Router
+from radio_proxy.core.routing.links import REPEATED_EXCHANGES
 from radio_proxy.core.routing.mrdv import MrdvRouter
 from radio_proxy.core.routing.mrsr import MrsrRouter
 
@@ -70,8 +71,15 @@ class Net:
     hold_ns: how long a packet waits in its queue. margin_db: how far above the threshold one is heard.
     """
 
-    def __init__(self, protocol: str, robots: Iterable[int], links: Iterable[tuple[int, int]]) -> None:
+    def __init__(
+        self,
+        protocol: str,
+        robots: Iterable[int],
+        links: Iterable[tuple[int, int]],
+        hello_period: int = 0,
+    ) -> None:
         self.protocol = protocol
+        self.hello_period = hello_period
         self.now = 0
         self.dice = random.Random(1)
         self.speed = 0.0
@@ -95,7 +103,7 @@ class Net:
         """A robot's NIC comes up with empty tables."""
         nic = NetNic(self, robot, incarnation)
         if self.protocol == "mrdv":
-            nic.router = MrdvRouter(nic, 10.0, self.now)
+            nic.router = MrdvRouter(nic, 10.0, self.now, self.hello_period)
         else:
             nic.router = MrsrRouter(nic, 10.0)
         self.nics[robot] = nic
@@ -147,6 +155,13 @@ class Net:
         """What was sent of one kind of packet."""
         return [sent for sent in self.sent if isinstance(sent.packet, kind)]
 
+    def first_of(self, kind: type) -> list[Sent]:
+        """The same without what was handed to a link again."""
+        first: dict[tuple[int, int, object], Sent] = {}
+        for sent in self.of(kind):
+            first.setdefault((sent.sender, sent.target, sent.packet), sent)
+        return list(first.values())
+
     def _arrive(self, given: tuple[NetNic, object, int], now: int) -> None:
         nic, packet, target = given
         if target == BROADCAST:
@@ -190,6 +205,19 @@ class Net:
         self.nics[target].router.on_packet(packet, nic.robot, now)
 
 
-def chain(protocol: str, robots: int) -> Net:
-    """Robots 1..n, each linked to the next."""
-    return Net(protocol, range(1, robots + 1), [(i, i + 1) for i in range(1, robots)])
+def receive(net: Net, robot: int, packet: object, sender: int, now: int) -> None:
+    """A packet comes from a neighbour that need not exist, over a good link."""
+    net.nics[robot].router.on_heard(sender, 20.0, now)
+    net.nics[robot].router.on_packet(packet, sender, now)
+
+
+def lose_link(net: Net, robot: int, neighbour: int) -> None:
+    """The link layer gives up what a robot sends to a neighbour, until the link counts as broken."""
+    for _ in range(REPEATED_EXCHANGES + 1):
+        net.nics[robot].router.on_undeliverable(None, neighbour, DeliveryStatus.BELOW_THRESHOLD, net.now)
+
+
+def chain(protocol: str, robots: int, hello_period: int = 0) -> Net:
+    """Robots 1..n, each linked to the next. hello_period: of MRDV's hellos [ns]."""
+    links = [(i, i + 1) for i in range(1, robots)]
+    return Net(protocol, range(1, robots + 1), links, hello_period)

@@ -13,7 +13,8 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from radio_proxy.core.routing.mrdv import BUFFER_MESSAGES, MrdvRouter
+from radio_proxy.core.routing.mrdv import MrdvRouter
+from radio_proxy.core.routing.mrdv_limits import BUFFER_MESSAGES
 from radio_proxy.core.routing.mrdv_packets import Rreq
 from radio_proxy.core.routing.mrsr import REQUEST_IDS, SEND_BUFFER, MrsrRouter
 from radio_proxy.core.routing.mrsr_cache import PATHS_PER_DESTINATION

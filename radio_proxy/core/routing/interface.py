@@ -62,7 +62,7 @@ class Router(Protocol):
         ...
 
     def on_heard(self, neighbour: RobotId, margin_db: float, now: int) -> None:
-        """A frame of a neighbour was received; what is in it comes next, unless it is a broadcast's data.
+        """A frame of a neighbour was received. A routing packet or data for a router comes next.
 
         margin_db: its SINR above the receive threshold [dB].
         """

@@ -3,14 +3,14 @@
 Left out, as the RFC allows: flow state, piggybacking. Route maintenance is the link layer's
 acknowledgement (8.3.1): a packet that it gives up is handed to it again (links.py).
 
-Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
-flag for normal forwarding. The source discovers a route for a message twice at most, and its time in the
-send buffer counts from when it was handed over. A robot that waits to reply out of its cache listens for
-others' replies, not for the origin's first data (8.2.5), and routes are learnt from others' replies and
-errors but not from their data (3.3.1), because a NIC hands up others' data here only to those that it is
-still to come to. A link on which something was overheard is taken for one if it is worthwhile (links.py);
-3.3.1 and 3.4.3 leave that open. A target replies to the copies of a request that came no farther than the first one,
-because in one cell every neighbour passes one on.
+Differs: the probability holds for the first propagating request of a discovery; all later ones carry
+the flag for normal forwarding. The source discovers a route for a message twice at most, and its time
+in the send buffer counts from when it was handed over. A robot that waits to reply out of its cache
+listens for others' replies, not for the origin's first data (8.2.5), and routes are learnt from others'
+replies and errors but not from their data (3.3.1), because a NIC hands up others' data here only to
+those that it is still to come to. A link on which something was overheard is taken for one if it is
+worthwhile (links.py); 3.3.1 and 3.4.3 leave that open. A target replies to the copies of a request that
+came no farther than the first one, because in one cell every neighbour passes one on.
 """
 
 from dataclasses import dataclass, field, replace
@@ -121,13 +121,13 @@ class MrsrRouter:
         elif isinstance(packet, Rerr):
             self.cache.remove_link(packet.a, packet.b)
             if packet.back[-1] != self._me:
-                self._nic.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
+                self._send_rerr(packet, now)
 
     def on_heard(self, neighbour: RobotId, margin_db: float, now: int) -> None:
         self._links.on_heard(neighbour, margin_db, now)
 
     def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
-        """Others' replies and errors teach as one's own do (RFC 4728, 3.3.1), their data shortens routes.
+        """Others' replies and errors teach as one's own do (RFC 4728, 3.3.1); data shortens routes.
 
         A reply that is as short as the one that waits here makes that one needless (8.2.5).
         """
@@ -166,7 +166,19 @@ class MrsrRouter:
     def on_undeliverable(
         self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
     ) -> None:
-        """The link is broken: forget it, tell the source, salvage (RFC 4728, 8.3.4 and 8.3.6)."""
+        """A link that is broken is forgotten, its source told, its data salvaged (RFC 4728, 8.3)."""
+        again = self._links.on_given_up(packet, next_hop)
+        if isinstance(again, DataPacket):
+            self._send_on(again, now)
+        elif isinstance(again, Rrep):
+            self._send_rrep(again, now)
+        elif isinstance(again, Rerr):
+            self._send_rerr(again, now)
+        else:
+            self._on_broken(packet, next_hop, cause, now)
+
+    def _on_broken(self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int) -> None:
+        """Forget the link, tell the source, salvage (RFC 4728, 8.3.4 and 8.3.6)."""
         self.cache.remove_link(self._me, next_hop)
         if isinstance(packet, Rrep):
             self._blacklist[next_hop] = now + BLACKLIST_NS
@@ -175,16 +187,18 @@ class MrsrRouter:
         at_origin = packet.message.source == self._me
         if not at_origin:
             back = without_loops(packet.path)[::-1]
-            error = Rerr(self._me, next_hop, back)
             if len(back) > 1:
-                self._nic.send(error, back[1], error.size_bytes, "rerr", now)
-        again = replace(packet, attempts=packet.attempts[:-1], salvaged=packet.salvaged + 1)
+                self._send_rerr(Rerr(self._me, next_hop, back), now)
+        again = replace(packet.afresh(), salvaged=packet.salvaged + 1)
         if again.salvaged <= MAX_SALVAGE and self._send_along_cache(again, now):
             return
         if at_origin and packet.message.discoveries < MAX_DISCOVERIES:
             self._buffer(again, now)
         else:
             self._nic.drop(packet, cause)
+
+    def _send_rerr(self, error: Rerr, now: int) -> None:
+        self._nic.send(error, after(error.back, self._me), error.size_bytes, "rerr", now)
 
     # DataPacket.
 
