@@ -61,7 +61,7 @@ def net(routing: str, seed: int, shadowing_db: float) -> dict[str, float]:
         if tick < TALKING_S * TICKS_PER_SECOND:
             for (source, destination), start in zip(flows, starts, strict=True):
                 if tick % (TICKS_PER_SECOND // 2) == start:
-                    outboxes[source].append(Transmission(destination, b"", 800))
+                    outboxes[source].append(Transmission(destination, b"", 800, 0))
         requests = tuple(TransmitRequest(i, 0.0, 0.0, tuple(outboxes[i])) for i in robots)
         record = radio.carry(Truth(tick, tick * PERIOD, present, requests, (), (), (), ())).record
         verdicts += record.verdicts

@@ -20,7 +20,8 @@ from radio_proxy.core.medium import Emission, Medium
 class Frame:
     """One MSDU for one hop. receiver: a station or EVERYONE; packet: opaque to this layer.
 
-    urgent: a routing packet, served before data. service_start: when it became the head of its queue
+    urgent: a routing packet, served before data. expires: when it is not worth sending any more [ns].
+    service_start: when it became the head of its queue
     [ns]. received: its data has arrived, with or without an ACK. sinr_db, cause: of its last RTS, CTS,
     data or ACK that was judged; cause is None if that one was received.
     """
@@ -29,6 +30,7 @@ class Frame:
     msdu_bytes: int
     packet: object
     urgent: bool = False
+    expires: int = NEVER
     service_start: int = -1
     attempts: int = 0
     received: bool = False

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 from onehop.contracts.messages import DeliveryStatus, Verdict
 from radio_proxy.core.addresses import RobotId
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.propagation import SILENT_DB
 
 MAX_DISCOVERIES = 2
@@ -18,6 +19,7 @@ class DataMessage:
     two). loss: of the copies that were given up, the one that came farthest, and why.
     first_service: when its source's link layer took it up. discovering_since: start of the route
     discovery that it waits for; discoveries: how many there were; discovery_time: spent in them.
+    expires: when it is of no use any more, NEVER if it always is.
     sinr_db, bit_error_rate: of the last attempt of its last hop.
     """
 
@@ -27,6 +29,7 @@ class DataMessage:
     payload: bytes
     msdu_bytes: int
     offered: int
+    expires: int = NEVER
     copies: int = 1
     has_verdict: bool = False
     loss: "tuple[DataPacket, DeliveryStatus] | None" = None

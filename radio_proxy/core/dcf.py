@@ -29,6 +29,7 @@ class Listener(Protocol):
     """The layer above: what becomes of frames."""
 
     def on_service(self, sender: StationIndex, frame: Frame, now: int) -> None: ...
+    def on_expired(self, sender: StationIndex, frame: Frame, now: int) -> None: ...
     def on_received(
         self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int
     ) -> None: ...
@@ -113,8 +114,17 @@ class Dcf:
         return [*head, *station.urgent, *station.queue]
 
     def _serve(self, station: Station, now: int, force_backoff: bool) -> None:
-        """The head of the queue comes into service; it waits out a backoff that is still running."""
-        station.frame = frame = (station.urgent or station.queue).popleft()
+        """The head of the queue comes into service; it waits out a backoff that is still running.
+
+        What has expired meanwhile is not served.
+        """
+        frame = (station.urgent or station.queue).popleft()
+        while frame.expires <= now:
+            self._listener.on_expired(station.index, frame, now)
+            if not station.urgent and not station.queue:
+                return
+            frame = (station.urgent or station.queue).popleft()
+        station.frame = frame
         frame.service_start = now
         self._listener.on_service(station.index, frame, now)
         if not station.contending:

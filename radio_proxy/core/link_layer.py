@@ -20,6 +20,7 @@ from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.error_rates import bit_error_rate
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.medium import Emission, Medium
 from radio_proxy.core.propagation import OWN_DB, SILENT_DB, Propagation
 from radio_proxy.core.routing.interface import Router
@@ -82,7 +83,8 @@ class LinkLayer:
     ) -> bool:
         """Queue a packet for one hop; what routing adds counts when it is queued."""
         receiver = EVERYONE if next_hop == BROADCAST else self._index[next_hop]
-        frame = Frame(receiver, size_bytes, packet, urgent=kind != "")
+        expires = packet.message.expires if isinstance(packet, DataPacket) else NEVER
+        frame = Frame(receiver, size_bytes, packet, urgent=kind != "", expires=expires)
         if not self._dcf.enqueue(self._index[robot], frame, now, self.force_backoff):
             return False
         if isinstance(packet, DataPacket):
@@ -97,6 +99,10 @@ class LinkLayer:
         packet = frame.packet
         if isinstance(packet, DataPacket) and packet.message.first_service < 0:
             packet.message.begin_service(now)
+
+    def on_expired(self, sender: StationIndex, frame: Frame, now: int) -> None:  # noqa: ARG002
+        assert isinstance(frame.packet, DataPacket), "routing packets do not expire"
+        self._deliveries.drop(frame.packet.tried(0), DeliveryStatus.EXPIRED)
 
     def on_received(self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int) -> None:
         packet = frame.packet

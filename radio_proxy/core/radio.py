@@ -19,6 +19,7 @@ from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.link_layer import LinkLayer
 from radio_proxy.core.nic import Nic
@@ -109,7 +110,16 @@ class Radio:
         self._numbers[robot] += 1
         destination = RobotId(transmission.destination)
         size = max(transmission.msdu_bytes, len(transmission.payload))
-        message = DataMessage(self._numbers[robot], robot, destination, transmission.payload, size, now)
+        lifetime = transmission.lifetime_ns or nanoseconds(self._section.message_lifetime_s)
+        message = DataMessage(
+            number=self._numbers[robot],
+            source=robot,
+            destination=destination,
+            payload=transmission.payload,
+            msdu_bytes=size,
+            offered=now,
+            expires=now + lifetime if lifetime else NEVER,
+        )
         data = DataPacket(message, (robot,))
         if destination == BROADCAST:
             if not self._link.send(robot, data, BROADCAST, size, "", now):

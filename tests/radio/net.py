@@ -8,6 +8,7 @@ from typing import Any
 
 from onehop.contracts.messages import BROADCAST, DeliveryStatus
 from radio_proxy.core.data_message import DataMessage, DataPacket
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.routing.interface import Router
 from radio_proxy.core.routing.links import REPEATED_EXCHANGES
 from radio_proxy.core.routing.mrdv import MrdvRouter
@@ -122,9 +123,10 @@ class Net:
         self._sequence += 1
         heapq.heappush(self._events, (time_ns, self._sequence, event, argument))
 
-    def submit(self, source: int, destination: int) -> DataMessage:
-        """A robot hands over a message now."""
-        message = DataMessage(len(self.messages) + 1, source, destination, b"", 800, self.now)
+    def submit(self, source: int, destination: int, lifetime_ns: int = 0) -> DataMessage:
+        """A robot hands over a message now. lifetime_ns: 0 for ever."""
+        expires = self.now + lifetime_ns if lifetime_ns else NEVER
+        message = DataMessage(len(self.messages) + 1, source, destination, b"", 800, self.now, expires)
         self.messages.append(message)
         self.nics[source].router.submit(DataPacket(message, (source,)), self.now)
         return message

@@ -18,6 +18,7 @@ from onehop.contracts.messages import DeliveryStatus
 from onehop.contracts.serial_numbers import following, newer, newest
 from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import MAX_DISCOVERIES, DataPacket
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
 from radio_proxy.core.routing.interface import NicServices
 from radio_proxy.core.routing.links import Links
@@ -195,10 +196,15 @@ class MrdvRouter:
     # Discovery by the origin.
 
     def _buffer(self, data: DataPacket, now: int) -> None:
+        if data.message.expires <= now:
+            self._nic.drop(data, DeliveryStatus.EXPIRED)
+            return
         if self.buffered >= BUFFER_MESSAGES:
             self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
             return
         self.buffered += 1
+        if data.message.expires != NEVER:
+            self._nic.at(data.message.expires, self._on_expired, data)
         destination = data.message.destination
         data.message.begin_discovery(now)
         discovery = self._discoveries.get(destination)
@@ -213,6 +219,9 @@ class MrdvRouter:
     def _request_route(self, discovery: RouteDiscovery, now: int) -> None:
         """Send the discovery's next request, or wait for the rate limit (RFC 3561, 6.3 and 6.4)."""
         if self._discoveries.get(discovery.destination) is not discovery:
+            return
+        if not discovery.waiting:
+            self._end_discovery(discovery, now)
             return
         wait_until = self._requests.next_allowed(now)
         if wait_until > now:
@@ -241,6 +250,16 @@ class MrdvRouter:
         else:
             timeout = 2 * NODE_TRAVERSAL_NS * (discovery.ttl + TIMEOUT_BUFFER)
         self._nic.at(now + timeout, self._on_no_reply, (discovery, discovery.number))
+
+    def _on_expired(self, data: DataPacket, now: int) -> None:
+        """A message is of no use any more. Its discovery goes on if others come before the next
+        request."""
+        discovery = self._discoveries.get(data.message.destination)
+        if discovery is not None and data in discovery.waiting:
+            discovery.waiting.remove(data)
+            self.buffered -= 1
+            data.message.end_discovery(now)
+            self._nic.drop(data, DeliveryStatus.EXPIRED)
 
     def _on_no_reply(self, requested: tuple[RouteDiscovery, int], now: int) -> None:
         discovery, number = requested

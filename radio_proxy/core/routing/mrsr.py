@@ -234,13 +234,16 @@ class MrsrRouter:
     # Discovery by the origin.
 
     def _buffer(self, data: DataPacket, now: int) -> None:
+        if data.message.expires <= now:
+            self._nic.drop(data, DeliveryStatus.EXPIRED)
+            return
         if self.buffered >= SEND_BUFFER:
             self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
             return
         self.buffered += 1
         data.message.begin_discovery(now)
-        deadline = data.message.offered + SEND_BUFFER_TIMEOUT_NS
-        self._nic.at(max(now, deadline), self._on_buffer_timeout, data)
+        deadline = max(now, data.message.offered + SEND_BUFFER_TIMEOUT_NS)
+        self._nic.at(min(deadline, data.message.expires), self._on_buffer_timeout, data)
         target = data.message.destination
         discovery = self._discoveries.get(target)
         if discovery is not None:
@@ -253,8 +256,9 @@ class MrsrRouter:
         """The next request: to the neighbours, then to all, ever more rarely (RFC 4728, 8.2.1)."""
         if self._discoveries.get(discovery.target) is not discovery:
             return
-        if discovery.sent > MAX_REQUESTS:
-            self._give_up(list(discovery.waiting), now)
+        if not discovery.waiting or discovery.sent > MAX_REQUESTS:
+            for data in self._end_discovery(discovery, now):
+                self._nic.drop(data, DeliveryStatus.NO_ROUTE)
             return
         self._number += 1
         first = discovery.sent == 0
@@ -273,21 +277,23 @@ class MrsrRouter:
             self._nic.at(now + discovery.timeout, self._request_route, discovery)
 
     def _on_buffer_timeout(self, data: DataPacket, now: int) -> None:
+        """A message has waited long enough; others may come before the next request of its discovery."""
         discovery = self._discoveries.get(data.message.destination)
-        if discovery is not None and data in discovery.waiting:
-            self._give_up([data], now)
+        if discovery is None or data not in discovery.waiting:
+            return
+        self._unbuffer(data, discovery, now)
+        expired = data.message.expires <= now
+        self._nic.drop(data, DeliveryStatus.EXPIRED if expired else DeliveryStatus.NO_ROUTE)
 
-    def _give_up(self, waiting: list[DataPacket], now: int) -> None:
-        for data in waiting:
-            self._unbuffer(data, now)
-            self._nic.drop(data, DeliveryStatus.NO_ROUTE)
+    def _end_discovery(self, discovery: RouteDiscovery, now: int) -> tuple[DataPacket, ...]:
+        del self._discoveries[discovery.target]
+        waited = tuple(discovery.waiting)
+        for data in waited:
+            self._unbuffer(data, discovery, now)
+        return waited
 
-    def _unbuffer(self, data: DataPacket, now: int) -> None:
-        """A message leaves the send buffer; with the last one its discovery ends."""
-        discovery = self._discoveries[data.message.destination]
+    def _unbuffer(self, data: DataPacket, discovery: RouteDiscovery, now: int) -> None:
         discovery.waiting.remove(data)
-        if not discovery.waiting:
-            del self._discoveries[discovery.target]
         self.buffered -= 1
         data.message.end_discovery(now)
 
@@ -297,10 +303,7 @@ class MrsrRouter:
             return
         for target in sorted(self._discoveries):
             if self.cache.find(target, now) is not None:
-                found = tuple(self._discoveries[target].waiting)
-                for data in found:
-                    self._unbuffer(data, now)
-                for data in found:
+                for data in self._end_discovery(self._discoveries[target], now):
                     self.submit(data, now)
 
     # Requests and replies of others.
