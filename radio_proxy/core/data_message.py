@@ -121,7 +121,9 @@ class DataPacket:
 
     def tried(self, attempts: int) -> "DataPacket":
         """The same copy after that many more attempts at the next hop."""
-        tried = (*self.attempts, sum(self.given_up) + attempts)
+        if self.given_up:
+            attempts += sum(self.given_up)
+        tried = (*self.attempts, attempts)
         return DataPacket(self.message, self.path, tried, self.route, self.salvaged, self.given_up)
 
     def again(self) -> "DataPacket":
@@ -135,5 +137,7 @@ class DataPacket:
 
     def moved(self, holder: RobotId, attempts: int) -> "DataPacket":
         """The copy that the next robot holds, after that many more attempts."""
-        path, tried = (*self.path, holder), (*self.attempts, sum(self.given_up) + attempts)
+        if self.given_up:
+            attempts += sum(self.given_up)
+        path, tried = (*self.path, holder), (*self.attempts, attempts)
         return DataPacket(self.message, path, tried, self.route, self.salvaged)

@@ -84,7 +84,7 @@ class LinkLayer:
         """Queue a packet for one hop; what routing adds counts when it is queued."""
         receiver = EVERYONE if next_hop == BROADCAST else self._index[next_hop]
         expires = packet.message.expires if isinstance(packet, DataPacket) else NEVER
-        frame = Frame(receiver, size_bytes, packet, urgent=kind != "", expires=expires)
+        frame = Frame(receiver, size_bytes, packet, kind != "", expires)
         if not self._dcf.enqueue(self._index[robot], frame, now, self.force_backoff):
             return False
         if isinstance(packet, DataPacket):
@@ -107,15 +107,18 @@ class LinkLayer:
     def on_received(self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int) -> None:
         packet = frame.packet
         holder, source = self._robots[receiver], self._robots[sender]
-        self._routers[holder].on_heard(source, frame.sinr_db - self._threshold_db, now)
+        router = self._routers[holder]
+        router.on_heard(source, frame.sinr_db - self._threshold_db, now)
         if isinstance(packet, DataPacket):
-            self._overhear(frame, sender, packet.named_beyond(holder), now)
             packet.message.copies += 1
+            beyond = packet.named_beyond(holder)
+            if beyond:
+                self._overhear(frame, sender, beyond, now)
             self._note_link(packet, frame)
             packet = packet.moved(holder, frame.attempts)
         else:
             self._overhear(frame, sender, (robot for robot in self._routers if robot != holder), now)
-        self._routers[holder].on_packet(packet, source, now)
+        router.on_packet(packet, source, now)
 
     def _overhear(self, frame: Frame, sender: StationIndex, robots: Iterable[RobotId], now: int) -> None:
         """Who of these overhears a frame that has reached its receiver: each with a fading of its own.

@@ -47,6 +47,7 @@ class Radio:
         self._incarnations: tuple[tuple[int, int], ...] = ()
         self._requests: tuple[TransmitRequest, ...] = ()
         self._numbers = dict.fromkeys(robots, 0)
+        self._default_lifetime = nanoseconds(section.message_lifetime_s)
 
     def carry(self, truth: Truth) -> Carriage:
         """What reaches whom in the tick that ends at truth.time_ns, and what became of the rest."""
@@ -110,16 +111,10 @@ class Radio:
         self._numbers[robot] += 1
         destination = RobotId(transmission.destination)
         size = max(transmission.msdu_bytes, len(transmission.payload))
-        lifetime = transmission.lifetime_ns or nanoseconds(self._section.message_lifetime_s)
-        message = DataMessage(
-            number=self._numbers[robot],
-            source=robot,
-            destination=destination,
-            payload=transmission.payload,
-            msdu_bytes=size,
-            offered=now,
-            expires=now + lifetime if lifetime else NEVER,
-        )
+        lifetime = transmission.lifetime_ns or self._default_lifetime
+        expires = now + lifetime if lifetime else NEVER
+        number, payload = self._numbers[robot], transmission.payload
+        message = DataMessage(number, robot, destination, payload, size, now, expires)
         data = DataPacket(message, (robot,))
         if destination == BROADCAST:
             if not self._link.send(robot, data, BROADCAST, size, "", now):

@@ -16,9 +16,9 @@ REPEATED_EXCHANGES = 5
 """How often a packet is handed to a link again before the link counts as broken.
 
 A link whose mean is 1 dB above the threshold, with fading of 4 dB, gives up 38 % of its exchanges of
-seven attempts, so six in a row are no chance; a neighbour out of reach is given up after 0.2 s. RFC
-4728, section 9, has two (MaxMaintRexmt) without saying what the link does, RFC 3561, 6.10, leaves it
-open."""
+seven attempts, so six in a row are no chance; a neighbour out of reach is given up after 0.2 s.
+Differs: RFC 4728, 4.5, has two (MaxMaintRexmt), the link layer's own included; RFC 3561, 6.10, leaves
+it to the link layer."""
 
 WORTHWHILE_DB = 3.0
 """Mean SINR above the receive threshold from which a direct link carries more than two hops do: at 17 m
