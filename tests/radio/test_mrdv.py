@@ -216,6 +216,7 @@ def test_the_ring_grows_and_then_the_whole_net_is_asked() -> None:
     waits = [(b.time_ns - a.time_ns) // MS for a, b in pairwise(net.of(Rreq))]
     expected = (240, 400, 560, 720, 2800, 5600)
     assert all(timeout <= wait < timeout + 10 for wait, timeout in zip(waits, expected, strict=True))
+    assert any((b.time_ns - a.time_ns) % MS for a, b in pairwise(net.of(Rreq))), "jittered"
 
 
 def test_a_known_distance_widens_the_first_ring() -> None:

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from onehop.contracts.messages import BROADCAST, DeliveryStatus, Verdict
+from onehop.contracts.messages import BROADCAST, Cut, DeliveryStatus, Verdict
 from onehop.contracts.radio_section import RadioSection
 from tests.radio.missions import Mission, Outboxes, Places, message
 
@@ -59,6 +59,19 @@ def test_a_follower_back_in_its_slot_is_on_one_hop_within_two_periods(
     away, back = nexts[4:13], nexts[13:]
     assert sum(hops(v) >= 2 for v in away) >= 7
     assert {(v.status, hops(v)) for v in back[2:]} == {(DeliveryStatus.DELIVERED, 1)}
+
+
+def test_beacons_alone_bring_a_direct_route_back() -> None:
+    """RFC 3561, 6.9: broadcasts of the team take the place of hellos; 3 hears 1 and offers."""
+    section = RadioSection(routing="mrdv", shadowing_db=0.0)
+    mission = Mission({1: (0.0, 0.0), 2: (4.0, 4.0), 3: (8.0, 0.0)}, section)
+    mission.cuts = (Cut((1,), (3,)),)
+    mission.run(20, {1: (message(3),)})
+    mission.cuts = ()
+    mission.run(2, {1: (message(BROADCAST, 100),)})
+    assert mission.control_bytes["hello"] == 48
+    (verdict,) = mission.run(1, {1: (message(3),)})
+    assert verdict.path == (1, 3)
 
 
 @pytest.mark.slow
