@@ -99,7 +99,7 @@ def all_pairs(rate_mbps: float, rts_threshold_bytes: int, seconds: int) -> dict[
     )
     mission = Mission(6, 3.0, section)
     outboxes = {
-        i: tuple(Transmission(j, b"", 800) for j in mission.robots if j != i) for i in mission.robots
+        i: tuple(Transmission(j, b"", 800, 0) for j in mission.robots if j != i) for i in mission.robots
     }
     for _ in range(seconds * TICKS_PER_SECOND):
         mission.step(outboxes)
@@ -120,9 +120,9 @@ def team(robots: int, routing: str, spacing: float, seconds: int) -> dict[str, o
     outboxes: Outboxes = {}
     for tick in range(seconds * TICKS_PER_SECOND):
         if tick % 40 == 0:
-            outboxes[leader] = tuple(Transmission(i, b"", 800) for i in followers)
+            outboxes[leader] = tuple(Transmission(i, b"", 800, 0) for i in followers)
         mission.step(outboxes)
-        outboxes = {i: (Transmission(leader, b"", 60),) for i in followers if mission.received[i]}
+        outboxes = {i: (Transmission(leader, b"", 60, 0),) for i in followers if mission.received[i]}
     return {"robots": robots, "routing": routing, "spacing_m": spacing, **mission.figures()}
 
 
@@ -130,7 +130,7 @@ def sparse(robots: int) -> dict[str, object]:
     """Time that one message a tick costs a pair alone in reach of each other, above an idle tick."""
     section = RadioSection(routing="direct", path_loss_exponent=4.0)
     means = []
-    talk: Outboxes = {1: (Transmission(2, b"", 800),)}
+    talk: Outboxes = {1: (Transmission(2, b"", 800, 0),)}
     for outboxes in ({}, talk):
         mission = Mission(robots, 80.0, section)
         first, second, *others = mission.present

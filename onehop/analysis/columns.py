@@ -117,12 +117,13 @@ class _Request(NamedTuple):
     robot: int
     destination: int
     msdu_bytes: int
+    lifetime_ns: int
     payload: bytes
 
 
 def _requests(truth: Truth) -> Sequence[_Request]:
     return [
-        _Request(request.robot, sent.destination, sent.msdu_bytes, sent.payload)
+        _Request(request.robot, sent.destination, sent.msdu_bytes, sent.lifetime_ns, sent.payload)
         for request in truth.transmit_requests
         for sent in request.outbox
     ]
@@ -190,7 +191,7 @@ TABLES: dict[str, TableSpec] = {
         "a message handed to the radio", "truth", _requests,
         (
             _C("robot", INTEGER), _C("destination", INTEGER), _C("msdu_bytes", INTEGER),
-            _C("payload", OBJECT),
+            _C("lifetime_s", SECONDS, "lifetime_ns"), _C("payload", OBJECT),
         ),
     ),
     "control": TableSpec(

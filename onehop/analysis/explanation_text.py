@@ -22,6 +22,7 @@ WHY_LOST = {
     DeliveryStatus.RECEIVER_BUSY: "the receiver was busy with another frame, or reserved (NAV)",
     DeliveryStatus.NO_ROUTE: "no route through the team was found",
     DeliveryStatus.QUEUE_FULL: "the queue of the robot that was to send it was full",
+    DeliveryStatus.EXPIRED: "it waited for a route or for the medium until it was of no use any more",
     DeliveryStatus.RECEIVER_GONE: "the receiver has left the mission",
     DeliveryStatus.RELAY_GONE: "a robot that was to pass it on has left the mission",
     DeliveryStatus.SENDER_GONE: "the sender left the mission before it was sent",

@@ -47,7 +47,7 @@ _WORD = re.compile(r"[a-z][a-z0-9_]{0,31}")
 _WHOLE = Range(-(2**63), 2**63 - 1)
 """Whole numbers of a note: tables hold them in 64 bits."""
 
-_TRANSMISSION_BYTES = 64
+_TRANSMISSION_BYTES = 80
 """What a transmission takes on the wire beyond its payload, at most [B]."""
 
 _STATUS_BYTES = 512
@@ -124,6 +124,8 @@ class ActionLimits:
                 return f"a message of {one.msdu_bytes} bytes on the air; a frame carries {MSDU_BYTES}"
             if len(one.payload) > one.msdu_bytes:
                 return f"a payload of {len(one.payload)} bytes in {one.msdu_bytes} bytes on the air"
+            if not 0 <= one.lifetime_ns <= _WHOLE.most:
+                return f"a message that lives for {one.lifetime_ns} ns"
             if not BROADCAST <= one.destination <= _WHOLE.most:
                 return f"a message to robot {one.destination}"
         weight = sum(map(self._weight, outbox))

@@ -87,12 +87,15 @@ def percept(observation: Observation, inbox: Inbox) -> Percept:
 class Transmission(Value, frozen=True):
     """One message handed to the NIC; destination is a robot id or BROADCAST.
 
-    msdu_bytes: size that it takes on the air [B], at least len(payload).
+    msdu_bytes: size that it takes on the air [B], at least len(payload). lifetime_ns: how long after it
+    is handed over it is of use, 0 for as long as the radio's own limit allows; an older one is dropped
+    where it waits (as with aMaxTransmitMSDULifetime of 802.11-1999, 9.4).
     """
 
     destination: int
     payload: bytes
     msdu_bytes: int
+    lifetime_ns: int
 
 
 class Note(Value, frozen=True):
@@ -193,7 +196,8 @@ class DeliveryStatus(StrEnum):
     COLLISION: would have been received, had no other frame overlapped its preamble or its bits.
     RECEIVER_BUSY: strong enough, but its receiver was locked on another frame or transmitted itself; or
     it was an RTS, and its receiver had to stay silent, because others had reserved the medium.
-    NO_ROUTE, QUEUE_FULL: at the robot that held it. RECEIVER_GONE: its destination is not in the mission
+    NO_ROUTE, QUEUE_FULL: at the robot that held it. EXPIRED: it waited there, for a route or for the
+    medium, until it was of no use any more. RECEIVER_GONE: its destination is not in the mission
     any more, or came back as another process, whatever else failed. RELAY_GONE: the same of a robot on
     its way, which held it or was to take it next; SENDER_GONE: of its source, which still held it.
     """
@@ -205,6 +209,7 @@ class DeliveryStatus(StrEnum):
     RECEIVER_BUSY = "receiver busy"
     NO_ROUTE = "no route"
     QUEUE_FULL = "queue full"
+    EXPIRED = "expired"
     RECEIVER_GONE = "receiver gone"
     RELAY_GONE = "relay gone"
     SENDER_GONE = "sender gone"

@@ -41,7 +41,10 @@ class RadioSection:
     cts_timeout_us: from the end of a frame until its answer is given up (SIFS + slot + preamble; 334 in
         the standard of 1999).
     queue_frames: bound of the queue of a NIC; a frame that finds it full is dropped.
+    message_lifetime_s: after which a message is dropped where it waits, unless it has a lifetime of its
+        own, as all messages of the team have; 0: never [s].
     routing: "direct" (one hop only), "mrsr" (on DSR) or "mrdv" (on AODV).
+    hello_s: period of MRDV's broadcast hellos (RFC 3561, 6.9), 0 for none [s].
     gamma_distance: remaining distance per unit of gamma in p_r = min(1, (1/v)^gamma) [m].
     """
 
@@ -75,7 +78,9 @@ class RadioSection:
     mac_header_bytes: Annotated[int, Range(1, 100)] = 34
     cts_timeout_us: Annotated[float, Range(222.0, 1e5)] = 222.0
     queue_frames: Annotated[int, Range(1, 100_000)] = 64
+    message_lifetime_s: Annotated[float, Range(0.0, 3600.0)] = 0.0
     routing: Literal["direct", "mrsr", "mrdv"] = "mrdv"
+    hello_s: Annotated[float, Range(0.0, 3600.0)] = 0.0
     gamma_distance: Annotated[float, Range(1e-3, 1e9)] = 10.0
 
     def problems(self) -> Iterator[Problem]:

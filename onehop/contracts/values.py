@@ -2,7 +2,7 @@
 
 import msgspec
 
-WIRE_VERSION = 2
+WIRE_VERSION = 3
 """Schema version that every wire message starts with; any other is refused by name."""
 
 

@@ -25,16 +25,18 @@ WINDOWS = 12
 class Frame:
     """One MSDU for one hop. receiver: a station or EVERYONE; packet: opaque to this layer.
 
-    urgent: a routing packet, served before data. service_start: when it became the head of its queue
-    [ns]. attempts: transmissions so far; short_retries, long_retries: its retry counts (retries.py).
-    received: its data has arrived, with or without an ACK. sinr_db, cause: of its last RTS, CTS, data or
-    ACK that was judged; cause is None if that one was received.
+    urgent: a routing packet, served before data. expires: when it is not worth sending any more [ns].
+    service_start: when it became the head of its queue [ns]. attempts: transmissions so far;
+    short_retries, long_retries: its retry counts (retries.py). received: its data has arrived, with or
+    without an ACK. sinr_db, cause: of its last RTS, CTS, data or ACK that was judged; cause is None if
+    that one was received.
     """
 
     receiver: StationIndex
     msdu_bytes: int
     packet: object
     urgent: bool = False
+    expires: int = NEVER
     service_start: int = -1
     attempts: int = 0
     short_retries: int = 0

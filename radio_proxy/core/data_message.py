@@ -1,9 +1,10 @@
 """A data message on its way from robot to robot, and what is on record about it until its verdict."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from onehop.contracts.messages import DeliveryStatus, Verdict
 from radio_proxy.core.addresses import RobotId
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.propagation import SILENT_DB
 
 MAX_DISCOVERIES = 2
@@ -18,6 +19,7 @@ class DataMessage:
     two). loss: of the copies that were given up, the one that came farthest, and why.
     first_service: when its source's link layer took it up. discovering_since: start of the route
     discovery that it waits for; discoveries: how many there were; discovery_time: spent in them.
+    expires: when it is of no use any more, NEVER if it always is.
     sinr_db, bit_error_rate: of the last attempt of its last hop.
     """
 
@@ -27,6 +29,7 @@ class DataMessage:
     payload: bytes
     msdu_bytes: int
     offered: int
+    expires: int = NEVER
     copies: int = 1
     has_verdict: bool = False
     loss: "tuple[DataPacket, DeliveryStatus] | None" = None
@@ -95,6 +98,7 @@ class DataPacket:
     """A copy of a message that one robot holds, never changed. path, attempts: how it came there.
 
     route, salvaged: the source route that it carries and how often it was salvaged (MRSR).
+    given_up: attempts of each time that the link to its next hop gave it up.
     """
 
     message: DataMessage
@@ -102,13 +106,38 @@ class DataPacket:
     attempts: tuple[int, ...] = ()
     route: tuple[RobotId, ...] = ()
     salvaged: int = 0
+    given_up: tuple[int, ...] = ()
+
+    def named_beyond(self, next_hop: RobotId) -> tuple[RobotId, ...]:
+        """Whom it names of those that it comes to after its next hop.
+
+        All of them with a source route, and without one the destination alone.
+        """
+        if next_hop == self.message.destination:
+            return ()
+        if not self.route:
+            return (self.message.destination,)
+        return self.route[self.route.index(next_hop) + 1 :]
 
     def tried(self, attempts: int) -> "DataPacket":
-        """The same copy after that many attempts at the next hop."""
+        """The same copy after that many more attempts at the next hop."""
+        if self.given_up:
+            attempts += sum(self.given_up)
         tried = (*self.attempts, attempts)
-        return DataPacket(self.message, self.path, tried, self.route, self.salvaged)
+        return DataPacket(self.message, self.path, tried, self.route, self.salvaged, self.given_up)
+
+    def again(self) -> "DataPacket":
+        """A copy that its link gave up, as it is handed to the same link once more."""
+        given_up = (*self.given_up, self.attempts[-1] - sum(self.given_up))
+        return replace(self, attempts=self.attempts[:-1], given_up=given_up)
+
+    def afresh(self) -> "DataPacket":
+        """A copy that its link gave up, as if nothing had been tried from here."""
+        return replace(self, attempts=self.attempts[:-1], given_up=())
 
     def moved(self, holder: RobotId, attempts: int) -> "DataPacket":
-        """The copy that the next robot holds."""
+        """The copy that the next robot holds, after that many more attempts."""
+        if self.given_up:
+            attempts += sum(self.given_up)
         path, tried = (*self.path, holder), (*self.attempts, attempts)
         return DataPacket(self.message, path, tried, self.route, self.salvaged)

@@ -85,8 +85,17 @@ class Dcf:
         self._contention.reassess(now)
 
     def _serve(self, station: Station, now: int, force_backoff: bool) -> None:
-        """The head of the queue comes into service; it waits out a backoff that is still running."""
-        station.frame = frame = (station.urgent or station.queue).popleft()
+        """The head of the queue comes into service; it waits out a backoff that is still running.
+
+        What has expired meanwhile is not served.
+        """
+        frame = (station.urgent or station.queue).popleft()
+        while frame.expires <= now:
+            self._listener.on_expired(station.index, frame, now)
+            if not station.urgent and not station.queue:
+                return
+            frame = (station.urgent or station.queue).popleft()
+        station.frame = frame
         frame.service_start = now
         self._listener.on_service(station.index, frame, now)
         if not station.contending:

@@ -8,6 +8,8 @@ included, and apart from them ("source_route") the bytes that a source route add
 message. Repetitions, RTS, CTS and ACK are the link's own and not in it.
 """
 
+from collections.abc import Iterable
+
 from onehop.contracts.messages import DeliveryStatus
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.addresses import BROADCAST, EVERYONE, RobotId, StationIndex
@@ -19,9 +21,10 @@ from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.emission import Emission
 from radio_proxy.core.error_rates import bit_error_rate
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.link_rules import link_rules
 from radio_proxy.core.medium import Medium
-from radio_proxy.core.propagation import OWN_DB, Propagation
+from radio_proxy.core.propagation import OWN_DB, SILENT_DB, Propagation
 from radio_proxy.core.routing.interface import Router
 
 
@@ -46,6 +49,7 @@ class LinkLayer:
         self._index = {robot: StationIndex(i) for i, robot in enumerate(robots)}
         self._routers: dict[RobotId, Router] = {}
         self._propagation = propagation
+        self._threshold_db = propagation.budget.receive_threshold_db
         self._deliveries = deliveries
         self._timing = dsss(section)
         rules = link_rules(section)
@@ -77,7 +81,8 @@ class LinkLayer:
     ) -> bool:
         """Queue a packet for one hop; what routing adds counts when it is queued."""
         receiver = EVERYONE if next_hop == BROADCAST else self._index[next_hop]
-        frame = Frame(receiver, size_bytes, packet, urgent=kind != "")
+        expires = packet.message.expires if isinstance(packet, DataPacket) else NEVER
+        frame = Frame(receiver, size_bytes, packet, kind != "", expires)
         if not self._dcf.enqueue(self._index[robot], frame, now, self.force_backoff):
             return False
         if isinstance(packet, DataPacket):
@@ -93,24 +98,42 @@ class LinkLayer:
         if isinstance(packet, DataPacket) and packet.message.first_service < 0:
             packet.message.begin_service(now)
 
+    def on_expired(self, sender: StationIndex, frame: Frame, now: int) -> None:  # noqa: ARG002
+        assert isinstance(frame.packet, DataPacket), "routing packets do not expire"
+        self._deliveries.drop(frame.packet.tried(0), DeliveryStatus.EXPIRED)
+
     def on_received(self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int) -> None:
         packet = frame.packet
-        holder = self._robots[receiver]
+        holder, source = self._robots[receiver], self._robots[sender]
+        router = self._routers[holder]
+        router.on_heard(source, frame.sinr_db - self._threshold_db, now)
         if isinstance(packet, DataPacket):
             packet.message.copies += 1
+            beyond = packet.named_beyond(holder)
+            if beyond:
+                self._overhear(frame, sender, beyond, now)
             self._note_link(packet, frame)
             packet = packet.moved(holder, frame.attempts)
         else:
-            self._overhear(packet, sender, holder, now)
-        self._routers[holder].on_packet(packet, self._robots[sender], now)
+            self._overhear(frame, sender, (robot for robot in self._routers if robot != holder), now)
+        router.on_packet(packet, source, now)
 
-    def _overhear(self, packet: object, sender: StationIndex, holder: RobotId, now: int) -> None:
-        """Control packets are overheard by everyone whose mean SNR allows it."""
-        row, source = self._propagation.mean_snr_row(sender), self._robots[sender]
-        threshold_db = self._propagation.budget.receive_threshold_db
-        for robot, router in self._routers.items():
-            if robot != holder and threshold_db <= row[self._index[robot]] < OWN_DB:
-                router.on_overheard(packet, source, now)
+    def _overhear(self, frame: Frame, sender: StationIndex, robots: Iterable[RobotId], now: int) -> None:
+        """Who of these overhears a frame that has reached its receiver: each with a fading of its own.
+
+        Differs: whatever else is sent meanwhile is left out, for it did not keep the receiver either.
+        """
+        source, row = self._robots[sender], self._propagation.mean_snr_row(sender)
+        judge_alone = self._medium.receivers.judge_alone
+        bits = 8 * (self._timing.mac_header_bytes + frame.msdu_bytes)
+        for robot in robots:
+            router, index = self._routers.get(robot), self._index[robot]
+            if router is None or not SILENT_DB < row[index] < OWN_DB:
+                continue
+            heard = judge_alone(index, row[index], None, self._timing.rate_mbps, bits)
+            if heard[0] is None:
+                router.on_heard(source, heard[1] - self._threshold_db, now)
+                router.on_overheard(frame.packet, source, now)
 
     def on_acknowledged(self, sender: StationIndex, frame: Frame, now: int) -> None:
         if isinstance(frame.packet, DataPacket):
@@ -148,6 +171,8 @@ class LinkLayer:
             if robot == source:
                 continue
             cause, sinr_db = self._medium.receivers.judgement(emission, self._index[robot])
+            if cause is None:
+                router.on_heard(source, sinr_db - self._threshold_db, now)
             if isinstance(packet, DataPacket):
                 packet.message.sinr_db = sinr_db
                 packet.message.bit_error_rate = bit_error_rate(rate_mbps, sinr_db)

@@ -14,10 +14,12 @@ from onehop.contracts.messages import (
 )
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.randomness import generator
+from onehop.contracts.units import nanoseconds
 from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.fast_fading import fast_fading
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.link_layer import LinkLayer
@@ -54,6 +56,7 @@ class Radio:
         self._incarnations: tuple[tuple[int, int], ...] = ()
         self._requests: tuple[TransmitRequest, ...] = ()
         self._numbers = dict.fromkeys(robots, 0)
+        self._default_lifetime = nanoseconds(section.message_lifetime_s)
 
     def carry(self, truth: Truth) -> Carriage:
         """What reaches whom in the tick that ends at truth.time_ns, and what became of the rest."""
@@ -118,7 +121,10 @@ class Radio:
         self._numbers[robot] += 1
         destination = RobotId(transmission.destination)
         size = max(transmission.msdu_bytes, len(transmission.payload))
-        message = DataMessage(self._numbers[robot], robot, destination, transmission.payload, size, now)
+        lifetime = transmission.lifetime_ns or self._default_lifetime
+        expires = now + lifetime if lifetime else NEVER
+        number, payload = self._numbers[robot], transmission.payload
+        message = DataMessage(number, robot, destination, payload, size, now, expires)
         data = DataPacket(message, (robot,))
         if destination == BROADCAST:
             if not self._link.send(robot, data, BROADCAST, size, "", now):
@@ -136,5 +142,5 @@ def _router(nic: NicServices, section: RadioSection, now: int) -> Router:
     if section.routing == "mrsr":
         return MrsrRouter(nic, section.gamma_distance)
     if section.routing == "mrdv":
-        return MrdvRouter(nic, section.gamma_distance, now)
+        return MrdvRouter(nic, section.gamma_distance, now, nanoseconds(section.hello_s))
     return DirectRouter(nic)

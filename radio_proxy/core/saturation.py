@@ -89,6 +89,9 @@ class Saturation:
         frame = Frame(self._load.receivers[sender], self._load.msdu_bytes, None)
         self._dcf.enqueue(sender, frame, now, force_backoff=True)
 
+    def on_expired(self, sender: StationIndex, frame: Frame, now: int) -> None:
+        """Frames that are always there do not expire."""
+
     def on_service(self, sender: StationIndex, frame: Frame, now: int) -> None:  # noqa: ARG002
         self.tally.offered += 1
 

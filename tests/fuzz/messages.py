@@ -192,7 +192,7 @@ def _request(robot: int, limits: ActionLimits, random: Random) -> TransmitReques
     for _ in range(random.choice((0, 1, 3, 100))):
         length = random.choice((0, 1, 800, MSDU_BYTES))
         destination = random.choice((0, 1, 2, 3, 4, 5, 2**63 - 1))
-        outbox.append(Transmission(destination, bytes(length), length))
+        outbox.append(Transmission(destination, bytes(length), length, random.choice((0, 1, 2**63 - 1))))
     fitting = tuple(limits.fitting(outbox))
     return TransmitRequest(robot, random.choice(_SPEEDS), random.choice(_SPEEDS), fitting)
 

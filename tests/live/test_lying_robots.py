@@ -87,7 +87,7 @@ LIES: dict[str, tuple[Callable[[], bytes], str]] = {
     ),
     "too long a message": (
         lambda: encode(
-            msgspec.structs.replace(action(5, 1), outbox=(Transmission(0, bytes(60_000), 60_000),))
+            msgspec.structs.replace(action(5, 1), outbox=(Transmission(0, bytes(60_000), 60_000, 0),))
         ),
         "a message of 60000 bytes on the air",
     ),

@@ -18,8 +18,10 @@ def line(robots: int, spacing: float) -> Places:
     return {i: (spacing * (i - 1), 0.0) for i in range(1, robots + 1)}
 
 
-def message(destination: int, msdu_bytes: int = 800, payload: bytes = b"next") -> Transmission:
-    return Transmission(destination, payload, msdu_bytes)
+def message(
+    destination: int, msdu_bytes: int = 800, payload: bytes = b"next", lifetime_ns: int = 0
+) -> Transmission:
+    return Transmission(destination, payload, msdu_bytes, lifetime_ns)
 
 
 class Mission:

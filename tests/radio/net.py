@@ -8,7 +8,9 @@ from typing import Any
 
 from onehop.contracts.messages import BROADCAST, DeliveryStatus
 from radio_proxy.core.data_message import DataMessage, DataPacket
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.routing.interface import Router
+from radio_proxy.core.routing.links import REPEATED_EXCHANGES
 from radio_proxy.core.routing.mrdv import MrdvRouter
 from radio_proxy.core.routing.mrsr import MrsrRouter
 
@@ -67,16 +69,24 @@ class NetNic:
 class Net:
     """Robots, the links among them, and everything that was sent. protocol: "mrdv" or "mrsr".
 
-    hold_ns: how long a packet waits in its queue.
+    hold_ns: how long a packet waits in its queue. margin_db: how far above the threshold one is heard.
     """
 
-    def __init__(self, protocol: str, robots: Iterable[int], links: Iterable[tuple[int, int]]) -> None:
+    def __init__(
+        self,
+        protocol: str,
+        robots: Iterable[int],
+        links: Iterable[tuple[int, int]],
+        hello_period: int = 0,
+    ) -> None:
         self.protocol = protocol
+        self.hello_period = hello_period
         self.now = 0
         self.dice = random.Random(1)
         self.speed = 0.0
         self.remaining = 0.0
         self.loss: Callable[[int, int], bool] = lambda _sender, _receiver: False
+        self.margin_db: Callable[[int, int], float] = lambda _sender, _receiver: 20.0
         self.watch: Callable[[], None] = lambda: None
         self.hold_ns = 0
         self.links = {frozenset(link) for link in links}
@@ -94,7 +104,7 @@ class Net:
         """A robot's NIC comes up with empty tables."""
         nic = NetNic(self, robot, incarnation)
         if self.protocol == "mrdv":
-            nic.router = MrdvRouter(nic, 10.0, self.now)
+            nic.router = MrdvRouter(nic, 10.0, self.now, self.hello_period)
         else:
             nic.router = MrsrRouter(nic, 10.0)
         self.nics[robot] = nic
@@ -113,9 +123,10 @@ class Net:
         self._sequence += 1
         heapq.heappush(self._events, (time_ns, self._sequence, event, argument))
 
-    def submit(self, source: int, destination: int) -> DataMessage:
-        """A robot hands over a message now."""
-        message = DataMessage(len(self.messages) + 1, source, destination, b"", 800, self.now)
+    def submit(self, source: int, destination: int, lifetime_ns: int = 0) -> DataMessage:
+        """A robot hands over a message now. lifetime_ns: 0 for ever."""
+        expires = self.now + lifetime_ns if lifetime_ns else NEVER
+        message = DataMessage(len(self.messages) + 1, source, destination, b"", 800, self.now, expires)
         self.messages.append(message)
         self.nics[source].router.submit(DataPacket(message, (source,)), self.now)
         return message
@@ -146,6 +157,13 @@ class Net:
         """What was sent of one kind of packet."""
         return [sent for sent in self.sent if isinstance(sent.packet, kind)]
 
+    def first_of(self, kind: type) -> list[Sent]:
+        """The same without what was handed to a link again."""
+        first: dict[tuple[int, int, object], Sent] = {}
+        for sent in self.of(kind):
+            first.setdefault((sent.sender, sent.target, sent.packet), sent)
+        return list(first.values())
+
     def _arrive(self, given: tuple[NetNic, object, int], now: int) -> None:
         nic, packet, target = given
         if target == BROADCAST:
@@ -153,6 +171,7 @@ class Net:
                 nic.router.on_broadcast_sent(packet, now)
             for robot in sorted(self.nics):
                 if self.linked(nic.robot, robot) and not self.loss(nic.robot, robot):
+                    self.hear(nic.robot, robot)
                     self.nics[robot].router.on_packet(packet, nic.robot, now)
             return
         reached = nic.alive and self.linked(nic.robot, target) and not self.loss(nic.robot, target)
@@ -169,17 +188,38 @@ class Net:
             failed = packet.tried(7) if isinstance(packet, DataPacket) else packet
             nic.router.on_undeliverable(failed, target, DeliveryStatus.BELOW_THRESHOLD, now)
 
+    def hear(self, sender: int, receiver: int) -> None:
+        """A frame has come from one to the other."""
+        self.nics[receiver].router.on_heard(sender, self.margin_db(sender, receiver), self.now)
+
     def _receive(self, nic: NetNic, packet: object, target: int, now: int) -> None:
+        self.hear(nic.robot, target)
+        named: Iterable[int] = sorted(self.nics)
+        if isinstance(packet, DataPacket):
+            named = packet.named_beyond(target)
+        for robot in named:
+            if robot != target and self.linked(nic.robot, robot):
+                self.hear(nic.robot, robot)
+                self.nics[robot].router.on_overheard(packet, nic.robot, now)
         if isinstance(packet, DataPacket):
             packet.message.copies += 1
             packet = packet.moved(target, 1)
-        else:
-            for robot in sorted(self.nics):
-                if robot != target and self.linked(nic.robot, robot):
-                    self.nics[robot].router.on_overheard(packet, nic.robot, now)
         self.nics[target].router.on_packet(packet, nic.robot, now)
 
 
-def chain(protocol: str, robots: int) -> Net:
-    """Robots 1..n, each linked to the next."""
-    return Net(protocol, range(1, robots + 1), [(i, i + 1) for i in range(1, robots)])
+def receive(net: Net, robot: int, packet: object, sender: int, now: int) -> None:
+    """A packet comes from a neighbour that need not exist, over a good link."""
+    net.nics[robot].router.on_heard(sender, 20.0, now)
+    net.nics[robot].router.on_packet(packet, sender, now)
+
+
+def lose_link(net: Net, robot: int, neighbour: int) -> None:
+    """The link layer gives up what a robot sends to a neighbour, until the link counts as broken."""
+    for _ in range(REPEATED_EXCHANGES + 1):
+        net.nics[robot].router.on_undeliverable(None, neighbour, DeliveryStatus.BELOW_THRESHOLD, net.now)
+
+
+def chain(protocol: str, robots: int, hello_period: int = 0) -> Net:
+    """Robots 1..n, each linked to the next. hello_period: of MRDV's hellos [ns]."""
+    links = [(i, i + 1) for i in range(1, robots)]
+    return Net(protocol, range(1, robots + 1), links, hello_period)

@@ -71,6 +71,7 @@ class Cell:
         self.arrived: list[tuple[int, int, Frame]] = []
         self.given_up: list[Frame] = []
         self.given_up_at: list[int] = []
+        self.expired: list[Frame] = []
 
     def send_at(
         self, time_us: float, sender: int, receiver: int, msdu_bytes: int = 800, urgent: bool = False
@@ -89,6 +90,9 @@ class Cell:
 
     def on_service(self, sender: int, frame: Frame, now: int) -> None:
         """Nothing to note."""
+
+    def on_expired(self, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
+        self.expired.append(frame)
 
     def on_received(self, receiver: int, sender: int, frame: Frame, now: int) -> None:  # noqa: ARG002
         self.arrived.append((now, sender, frame))

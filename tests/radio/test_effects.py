@@ -1,6 +1,7 @@
 """What the radio must show in a mission: relays, faults, overhead and delay of the two protocols."""
 
 import math
+import statistics
 
 import pytest
 
@@ -95,7 +96,7 @@ def drive(routing: str, seed: int) -> tuple[int, list[Verdict]]:
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_mrsr_has_less_overhead_and_more_delay_a_hop_than_mrdv(seed: int) -> None:
-    """Thesis 4.2."""
+    """Thesis 4.2; medians, for the mean is that of the few messages whose link broke under way."""
     overhead, delay_a_hop = {}, {}
     for routing in ("mrsr", "mrdv"):
         overhead[routing], nexts = drive(routing, seed)
@@ -103,7 +104,7 @@ def test_mrsr_has_less_overhead_and_more_delay_a_hop_than_mrdv(seed: int) -> Non
         delays = [
             (v.arrival_ns - v.service_start_ns - v.discovery_ns) / (len(v.path) - 1) for v in nexts
         ]
-        delay_a_hop[routing] = sum(delays) / len(delays)
+        delay_a_hop[routing] = statistics.median(delays)
     assert overhead["mrsr"] < 0.8 * overhead["mrdv"]
     assert delay_a_hop["mrsr"] > 1.01 * delay_a_hop["mrdv"]
 

@@ -104,7 +104,10 @@ def test_a_follower_cut_from_its_leader_is_led_over_a_relay_and_hurries(
 def test_the_normal_discovery_leads_a_follower_when_nobody_passes_requests_on(
     tmp_path: Path, routing: str, discovery_s: float
 ) -> None:
-    """Thesis 3.7.2: p_r is 0 at 1.5 m/s with gamma in the thousands; 1 is in reach of 2 alone."""
+    """Thesis 3.7.2: p_r is 0 at 1.5 m/s with gamma in the thousands; 1 is in reach of 2 alone.
+
+    A Next lives for half a second here, so none waits that long, but they keep the discovery alive.
+    """
     settings = (
         f'radio.routing="{routing}"',
         "radio.shadowing_db=0",
@@ -120,7 +123,7 @@ def test_the_normal_discovery_leads_a_follower_when_nobody_passes_requests_on(
         v for v in diary.nexts(30, 40) if v.receiver == 1 and v.status is DeliveryStatus.DELIVERED
     ]
     assert {v.path for v in arrived} == {(3, 2, 1)}
-    assert max(v.discovery_ns for v in arrived) > discovery_s * SECOND
+    assert min(v.arrival_ns for v in arrived) > (30 + discovery_s) * SECOND
     assert diary.statuses[-1][3].members == (1, 2, 3, 4, 5, 6)
 
 

@@ -1,13 +1,17 @@
 """MRDV does what RFC 3561 says, rule by rule; section numbers are the RFC's."""
 
+from itertools import pairwise
+
 import pytest
 
 from onehop.contracts.messages import BROADCAST, DeliveryStatus
 from radio_proxy.core.data_message import DataPacket
-from radio_proxy.core.routing.mrdv import BUFFER_MESSAGES, NET_DIAMETER, MrdvRouter
+from radio_proxy.core.routing.links import REPEATED_EXCHANGES
+from radio_proxy.core.routing.mrdv import MrdvRouter
+from radio_proxy.core.routing.mrdv_limits import BUFFER_MESSAGES, NET_DIAMETER
 from radio_proxy.core.routing.mrdv_packets import RREP_BYTES, RREQ_BYTES, Rerr, Rrep, Rreq, rerr_bytes
 from radio_proxy.core.routing.mrdv_table import ACTIVE_ROUTE_NS, DELETE_PERIOD_NS, RouteTable
-from tests.radio.net import HOP_NS, MS, Net, chain
+from tests.radio.net import HOP_NS, MS, Net, chain, lose_link, receive
 
 LONG = 60_000 * MS
 
@@ -92,7 +96,7 @@ def test_a_request_is_passed_on_once() -> None:
     """6.5: (origin, id) seen within PATH_DISCOVERY_TIME is discarded."""
     net = Net("mrdv", [1], [])
     for sender in (8, 7, 8):
-        router(net, 1).on_packet(request(5), sender, 0)
+        receive(net, 1, request(5), sender, 0)
     net.run(LONG)
     assert len(net.of(Rreq)) == 1
 
@@ -100,7 +104,7 @@ def test_a_request_is_passed_on_once() -> None:
 def test_a_request_leaves_a_way_back() -> None:
     """6.5: reverse routes to the origin and to the previous hop."""
     net = Net("mrdv", [1], [])
-    router(net, 1).on_packet(request(5), 8, 0)
+    receive(net, 1, request(5), 8, 0)
     back, neighbour = router(net, 1).table.usable(9, 0), router(net, 1).table.usable(8, 0)
     assert back is not None
     assert (back.next_hop, back.hops, back.sequence) == (8, 2, 5)
@@ -111,8 +115,8 @@ def test_a_request_leaves_a_way_back() -> None:
 def test_a_request_loses_a_hop_of_its_ttl() -> None:
     """6.5: TTL 1 goes no further, hop count grows."""
     net = Net("mrdv", [1], [])
-    router(net, 1).on_packet(request(5, ttl=1), 8, 0)
-    router(net, 1).on_packet(request(5, number=2, ttl=2), 8, 0)
+    receive(net, 1, request(5, ttl=1), 8, 0)
+    receive(net, 1, request(5, number=2, ttl=2), 8, 0)
     net.run(LONG)
     (onward,) = [sent.packet for sent in net.of(Rreq)]
     assert isinstance(onward, Rreq)
@@ -127,18 +131,46 @@ def test_only_a_route_fresh_enough_answers(asked: int | None, known: int, answer
     """6.6: the sequence number in the table is at least the one asked for."""
     net = Net("mrdv", [1], [])
     router(net, 1).table.update(5, 3, 2, known, LONG, 0)
-    router(net, 1).on_packet(request(5, sequence=asked), 8, 0)
+    receive(net, 1, request(5, sequence=asked), 8, 0)
     net.run(LONG)
     replies = [sent for sent in net.of(Rrep) if sent.target == 8]
     assert bool(replies) == answers
     assert bool(net.of(Rreq)) != answers
 
 
+def test_a_request_over_a_weak_link_waits_for_a_copy_over_a_better_one() -> None:
+    """6.5 takes the first that comes; here 7 passes it on a little later than the origin is heard."""
+    for better, next_hop, hops in ((True, 7, 2), (False, 9, 1)):
+        net = Net("mrdv", [1], [])
+        router(net, 1).on_heard(9, 2.0, 0)
+        router(net, 1).on_packet(request(5, hops=0), 9, 0)
+        net.run(15 * MS)
+        if better:
+            receive(net, 1, request(5), 7, net.now)
+        net.run(15 * MS)
+        back = router(net, 1).table.usable(9, net.now)
+        assert back is not None
+        assert (back.next_hop, back.hops) == (next_hop, hops)
+
+
+def test_a_weak_link_does_not_replace_a_route_over_relays() -> None:
+    """6.2, as far as a broadcast that was heard by chance would do so."""
+    for margin_db, next_hop in ((2.0, 3), (20.0, 8)):
+        net = Net("mrdv", [1], [])
+        router(net, 1).table.update(8, 3, 2, 10, LONG, 0)
+        router(net, 1).on_heard(8, margin_db, 0)
+        router(net, 1).on_packet(request(5), 8, 0)
+        net.run(25 * MS)
+        route = router(net, 1).table.usable(8, net.now)
+        assert route is not None
+        assert route.next_hop == next_hop
+
+
 def test_destination_only_is_heeded() -> None:
     """6.3, flag D."""
     net = Net("mrdv", [1], [])
     router(net, 1).table.update(5, 3, 2, 10, LONG, 0)
-    router(net, 1).on_packet(request(5, destination_only=True), 8, 0)
+    receive(net, 1, request(5, destination_only=True), 8, 0)
     net.run(LONG)
     assert not net.of(Rrep)
 
@@ -147,7 +179,7 @@ def test_who_answers_for_another_tells_it_of_the_origin() -> None:
     """6.6.3: a gratuitous reply towards the destination."""
     net = Net("mrdv", [1], [])
     router(net, 1).table.update(5, 3, 2, 10, LONG, 0)
-    router(net, 1).on_packet(request(5), 8, 0)
+    receive(net, 1, request(5), 8, 0)
     (gratuitous,) = [sent.packet for sent in net.of(Rrep) if sent.target == 3]
     assert isinstance(gratuitous, Rrep)
     assert (gratuitous.origin, gratuitous.destination, gratuitous.sequence) == (5, 9, 5)
@@ -156,7 +188,7 @@ def test_who_answers_for_another_tells_it_of_the_origin() -> None:
 def test_a_destination_answers_with_a_number_as_new_as_asked() -> None:
     """6.6.1."""
     net = Net("mrdv", [1], [])
-    router(net, 1).on_packet(request(1, sequence=40), 8, 0)
+    receive(net, 1, request(1, sequence=40), 8, 0)
     (reply,) = [sent.packet for sent in net.of(Rrep)]
     assert isinstance(reply, Rrep)
     assert (reply.sequence, reply.hops, reply.lifetime) == (40, 0, 6_000 * MS)
@@ -167,7 +199,7 @@ def test_a_request_learns_a_newer_number_on_its_way() -> None:
     net = Net("mrdv", [1], [])
     router(net, 1).table.update(5, 3, 2, 10, LONG, 0)
     router(net, 1).table.break_link(3, 0)
-    router(net, 1).on_packet(request(5, sequence=7), 8, 0)
+    receive(net, 1, request(5, sequence=7), 8, 0)
     net.run(100 * MS)
     (onward,) = [sent.packet for sent in net.of(Rreq)]
     assert isinstance(onward, Rreq)
@@ -179,9 +211,12 @@ def test_the_ring_grows_and_then_the_whole_net_is_asked() -> None:
     net = Net("mrdv", [1], [])
     net.submit(1, 2)
     net.run(LONG)
-    asked = [(s.time_ns // MS, s.packet.ttl) for s in net.of(Rreq) if isinstance(s.packet, Rreq)]
-    wide = NET_DIAMETER
-    assert asked == [(0, 1), (240, 3), (640, 5), (1200, 7), (1920, wide), (4720, wide), (10320, wide)]
+    asked = [s.packet.ttl for s in net.of(Rreq) if isinstance(s.packet, Rreq)]
+    assert asked == [1, 3, 5, 7, NET_DIAMETER, NET_DIAMETER, NET_DIAMETER]
+    waits = [(b.time_ns - a.time_ns) // MS for a, b in pairwise(net.of(Rreq))]
+    expected = (240, 400, 560, 720, 2800, 5600)
+    assert all(timeout <= wait < timeout + 10 for wait, timeout in zip(waits, expected, strict=True))
+    assert any((b.time_ns - a.time_ns) % MS for a, b in pairwise(net.of(Rreq))), "jittered"
 
 
 def test_a_known_distance_widens_the_first_ring() -> None:
@@ -211,12 +246,15 @@ def test_the_buffer_is_bounded_and_drops_the_newest() -> None:
 
 
 def test_a_partition_ends_in_no_route() -> None:
-    """6.3: after RREQ_RETRIES the messages are dropped: at 21.52 s with the timers of section 10."""
+    """6.3: after RREQ_RETRIES the messages are dropped: at 21.52 s with the timers of section 10.
+
+    The jitter of six repetitions comes on top.
+    """
     net = Net("mrdv", [1, 2], [])
     message = net.submit(1, 2)
     net.run(21_519 * MS)
     assert not net.lost
-    net.run(2 * MS)
+    net.run(61 * MS)
     assert net.lost == [(message, DeliveryStatus.NO_ROUTE)]
 
 
@@ -237,9 +275,49 @@ def test_a_broken_link_kills_every_route_over_it_one_number_newer() -> None:
     table = router(net, 1).table
     for destination, via in ((5, 3), (6, 3), (7, 4)):
         table.update(destination, via, 2, 10, LONG, 0)
-    router(net, 1).on_undeliverable(Rerr(()), 3, DeliveryStatus.BELOW_THRESHOLD, 0)
+    lose_link(net, 1, 3)
     assert [table.usable(d, 0) is not None for d in (5, 6, 7)] == [False, False, True]
     assert [entry.sequence for d in (5, 6, 7) if (entry := table.entry(d, 0))] == [11, 11, 10]
+
+
+def test_one_exchange_that_is_given_up_breaks_no_link() -> None:
+    """6.10 leaves the notification open: no error and no request for what is chance."""
+    net = chain("mrdv", 3)
+    net.submit(1, 3)
+    net.run(1_000 * MS)
+    net.sent.clear()
+    failing = iter([True] * REPEATED_EXCHANGES)
+    net.loss = lambda sender, receiver: (sender, receiver) == (2, 3) and next(failing, False)
+    net.submit(1, 3)
+    net.run(20 * MS)
+    assert not net.of(Rerr)
+    assert not net.of(Rreq)
+    (_, arrived) = net.delivered[-1]
+    assert (arrived.path, arrived.attempts) == ((1, 2, 3), (1, 7 * REPEATED_EXCHANGES + 1))
+
+
+def test_a_link_that_gives_everything_up_is_broken() -> None:
+    """6.11 case i, after so many exchanges in a row."""
+    net = chain("mrdv", 3)
+    net.submit(1, 3)
+    net.run(1_000 * MS)
+    net.links.remove(frozenset((2, 3)))
+    net.sent.clear()
+    net.submit(1, 3)
+    net.run(20 * MS)
+    assert len([s for s in net.of(DataPacket) if s.sender == 2]) == REPEATED_EXCHANGES + 1
+    assert [(s.sender, s.target) for s in net.of(Rerr)] == [(2, 1)]
+
+
+def test_a_message_whose_route_went_while_its_link_failed_looks_for_another() -> None:
+    net = Net("mrdv", [1, 2, 3], [(1, 2), (2, 3)])
+    router(net, 1).table.update(3, 2, 2, 0, LONG, 0)
+    message = net.submit(1, 3)
+    net.sent.clear()
+    router(net, 1).table.break_link(2, 0)
+    given_up = DataPacket(message, (1,)).tried(7)
+    router(net, 1).on_undeliverable(given_up, 2, DeliveryStatus.BELOW_THRESHOLD, 0)
+    assert [type(sent.packet) for sent in net.sent] == [Rreq]
 
 
 def test_a_stale_route_through_the_asker_does_not_answer() -> None:
@@ -270,7 +348,7 @@ def test_precursors_are_told(precursors: tuple[int, ...], target: int) -> None:
     assert route is not None
     for robot in precursors:
         route.add_precursor(robot)
-    router(net, 1).on_undeliverable(Rerr(()), 3, DeliveryStatus.BELOW_THRESHOLD, 0)
+    lose_link(net, 1, 3)
     (error,) = net.of(Rerr)
     assert (error.packet, error.target) == (Rerr(((5, 11),)), target)
 
@@ -285,7 +363,7 @@ def test_an_error_kills_only_routes_through_its_sender_and_travels_on() -> None:
         route = table.usable(destination, 0)
         assert route is not None
         route.add_precursor(8)
-    router(net, 1).on_packet(Rerr(((5, 12), (6, 12))), 3, 0)
+    receive(net, 1, Rerr(((5, 12), (6, 12))), 3, 0)
     assert table.usable(5, 0) is None
     assert table.usable(6, 0) is not None
     assert [sent.packet for sent in net.of(Rerr)] == [Rerr(((5, 12),))]
@@ -317,12 +395,12 @@ def test_the_source_discovers_once_more_when_its_link_breaks() -> None:
 def test_a_neighbour_that_does_not_take_replies_is_not_heard_for_a_while() -> None:
     """6.8: the blacklist, filled by link-layer feedback on a reply."""
     net = Net("mrdv", [1], [])
-    router(net, 1).on_packet(request(1), 8, 0)
+    receive(net, 1, request(1), 8, 0)
     net.run(10 * MS)
-    router(net, 1).on_packet(request(5, number=2), 8, net.now)
+    receive(net, 1, request(5, number=2), 8, net.now)
     net.run(5_700 * MS)
     assert not net.of(Rreq)
-    router(net, 1).on_packet(request(5, number=3), 8, net.now)
+    receive(net, 1, request(5, number=3), 8, net.now)
     net.run(100 * MS)
     assert len(net.of(Rreq)) == 1
 
@@ -331,8 +409,8 @@ def test_a_moving_robot_hardly_passes_requests_on() -> None:
     """Thesis 3.7.2: (v, gamma) = (3, 10) -> 1.69e-5; the flag for normal discovery switches it off."""
     net = Net("mrdv", [1], [])
     net.speed, net.remaining = 3.0, 100.0
-    router(net, 1).on_packet(request(5), 8, 0)
-    router(net, 1).on_packet(request(5, number=2, normal=True), 8, 0)
+    receive(net, 1, request(5), 8, 0)
+    receive(net, 1, request(5, number=2, normal=True), 8, 0)
     net.run(LONG)
     assert [s.packet.number for s in net.of(Rreq) if isinstance(s.packet, Rreq)] == [2]
 

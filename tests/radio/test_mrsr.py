@@ -6,10 +6,11 @@ import pytest
 
 from onehop.contracts.messages import BROADCAST, DeliveryStatus
 from radio_proxy.core.data_message import DataMessage, DataPacket
+from radio_proxy.core.routing.links import REPEATED_EXCHANGES
 from radio_proxy.core.routing.mrsr import MAX_SALVAGE, SEND_BUFFER, MrsrRouter
 from radio_proxy.core.routing.mrsr_cache import CACHE_TIMEOUT_NS, PATHS_PER_DESTINATION, RouteCache
 from radio_proxy.core.routing.mrsr_packets import Rerr, Rrep, Rreq, source_route_bytes, without_loops
-from tests.radio.net import HOP_NS, MS, Net, chain
+from tests.radio.net import HOP_NS, MS, Net, chain, lose_link, receive
 
 LONG = 60_000 * MS
 
@@ -50,7 +51,7 @@ def test_the_header_grows_by_four_bytes_a_hop() -> None:
 def test_a_request_that_lists_this_robot_is_discarded() -> None:
     """8.2.2: own address in the route."""
     net = Net("mrsr", [1], [])
-    router(net, 1).on_packet(request(5, 9, 1, 8), 8, 0)
+    receive(net, 1, request(5, 9, 1, 8), 8, 0)
     net.run(LONG)
     assert not net.sent
 
@@ -58,8 +59,8 @@ def test_a_request_that_lists_this_robot_is_discarded() -> None:
 def test_a_request_is_passed_on_once_with_this_robot_in_its_route() -> None:
     """8.2.2: (identification, target) seen before."""
     net = Net("mrsr", [1], [])
-    router(net, 1).on_packet(request(5, 9, 8), 8, 0)
-    router(net, 1).on_packet(request(5, 9, 7), 7, 0)
+    receive(net, 1, request(5, 9, 8), 8, 0)
+    receive(net, 1, request(5, 9, 7), 7, 0)
     net.run(LONG)
     assert [sent.packet for sent in net.of(Rreq)] == [request(5, 9, 8, 1, ttl=4)]
 
@@ -68,9 +69,9 @@ def test_only_so_many_requests_of_a_robot_are_remembered() -> None:
     """4.3: RequestTableIds = 16."""
     net = Net("mrsr", [1], [])
     for number in range(1, 18):
-        router(net, 1).on_packet(request(5, 9, number=number, ttl=2), 9, 0)
-    router(net, 1).on_packet(request(5, 9, number=17, ttl=2), 9, 0)
-    router(net, 1).on_packet(request(5, 9, number=1, ttl=2), 9, 0)
+        receive(net, 1, request(5, 9, number=number, ttl=2), 9, 0)
+    receive(net, 1, request(5, 9, number=17, ttl=2), 9, 0)
+    receive(net, 1, request(5, 9, number=1, ttl=2), 9, 0)
     net.run(LONG)
     assert len(net.of(Rreq)) == 18
 
@@ -78,7 +79,7 @@ def test_only_so_many_requests_of_a_robot_are_remembered() -> None:
 def test_a_nonpropagating_request_goes_no_further() -> None:
     """3.3.3: hop limit 1."""
     net = Net("mrsr", [1], [])
-    router(net, 1).on_packet(request(5, 9, ttl=1), 9, 0)
+    receive(net, 1, request(5, 9, ttl=1), 9, 0)
     net.run(LONG)
     assert not net.of(Rreq)
 
@@ -86,31 +87,31 @@ def test_a_nonpropagating_request_goes_no_further() -> None:
 def test_the_target_answers_along_the_reversed_route() -> None:
     """8.2.4, with a jitter of at most 10 ms."""
     net = Net("mrsr", [1], [])
-    router(net, 1).on_packet(request(1, 9, 8), 8, 0)
+    receive(net, 1, request(1, 9, 8), 8, 0)
     net.run(11 * MS)
-    (reply,) = net.of(Rrep)
+    (reply,) = net.first_of(Rrep)
     assert (reply.packet, reply.target) == (Rrep(1, (9, 8, 1), (1, 8, 9)), 8)
 
 
 def test_copies_that_came_farther_are_not_answered() -> None:
     net = Net("mrsr", [1], [])
     for route in ((9, 8), (9, 7), (9, 6, 5)):
-        router(net, 1).on_packet(request(1, *route), route[-1], 0)
+        receive(net, 1, request(1, *route), route[-1], 0)
     net.run(LONG)
-    assert [sent.target for sent in net.of(Rrep)] in ([8, 7], [7, 8])
+    assert [sent.target for sent in net.first_of(Rrep)] in ([8, 7], [7, 8])
 
 
 def test_a_cached_route_answers_unless_it_would_loop() -> None:
     """8.2.3: no robot twice in the route so far and the cached one together."""
     net = Net("mrsr", [1], [])
     router(net, 1).cache.add((1, 8, 5), 0)
-    router(net, 1).on_packet(request(5, 9, 8), 8, 0)
+    receive(net, 1, request(5, 9, 8), 8, 0)
     net.run(100 * MS)
     assert not net.of(Rrep)
     assert len(net.of(Rreq)) == 1
-    router(net, 1).on_packet(request(5, 9, 7, number=2), 7, net.now)
+    receive(net, 1, request(5, 9, 7, number=2), 7, net.now)
     net.run(100 * MS)
-    (reply,) = net.of(Rrep)
+    (reply,) = net.first_of(Rrep)
     assert reply.packet == Rrep(2, (9, 7, 1, 8, 5), (1, 7, 9))
     assert len(net.of(Rreq)) == 1, "who answers does not pass on"
 
@@ -119,12 +120,12 @@ def test_a_reply_that_is_needless_is_not_sent() -> None:
     """8.2.5: another robot's reply, as short, was heard while this one waited."""
     net = Net("mrsr", [1], [])
     router(net, 1).cache.add((1, 5), 0)
-    router(net, 1).on_packet(request(5, 9), 9, 0)
+    receive(net, 1, request(5, 9), 9, 0)
     router(net, 1).on_overheard(Rrep(1, (9, 2, 4, 5), (2, 9)), 2, 0)
-    router(net, 1).on_packet(request(5, 9, number=2), 9, 0)
+    receive(net, 1, request(5, 9, number=2), 9, 0)
     router(net, 1).on_overheard(Rrep(2, (9, 2, 5), (2, 9)), 2, 0)
     net.run(LONG)
-    assert [sent.packet for sent in net.of(Rrep)] == [Rrep(1, (9, 1, 5), (1, 9))]
+    assert [sent.packet for sent in net.first_of(Rrep)] == [Rrep(1, (9, 1, 5), (1, 9))]
 
 
 def test_an_overheard_reply_teaches_the_way_to_everyone_on_it() -> None:
@@ -145,9 +146,77 @@ def test_an_overheard_reply_sends_what_waits_for_its_way() -> None:
     """8.2.6: a route that comes by chance ends a discovery as well."""
     net = Net("mrsr", [1, 2, 4, 9], [(1, 2), (2, 4)])
     message = net.submit(1, 4)
+    router(net, 1).on_heard(2, 20.0, 0)
     router(net, 1).on_overheard(Rrep(7, (9, 2, 4), (2, 9)), 2, 0)
     net.run(5 * MS)
     assert [arrived.message for _, arrived in net.delivered] == [message]
+
+
+def test_a_reply_overheard_on_a_weak_link_teaches_nothing() -> None:
+    """3.3.1 leaves it open: a path over a link that carries nothing would be the shortest one."""
+    net = Net("mrsr", [1], [])
+    router(net, 1).on_heard(2, 1.0, 0)
+    router(net, 1).on_overheard(Rrep(7, (9, 2, 4), (2, 9)), 2, 0)
+    assert router(net, 1).cache.paths() == ()
+
+
+def relayed(margin_db: float) -> Net:
+    """1 sends to 3 over 2 while 3 comes near and is heard by 1, and 1 by 3, so well."""
+    net = chain("mrsr", 3)
+    net.submit(1, 3)
+    net.run(2_000 * MS)
+    net.links.add(frozenset((1, 3)))
+    net.margin_db = lambda _sender, _receiver: margin_db
+    net.sent.clear()
+    net.submit(1, 3)
+    net.run(20 * MS)
+    return net
+
+
+def test_data_overheard_early_shortens_its_route() -> None:
+    """3.4.3 and 8.1.5: the route up to who was overheard, and from who overheard it."""
+    net = relayed(20.0)
+    (reply,) = net.of(Rrep)
+    assert (reply.sender, reply.target, reply.packet) == (3, 1, Rrep(0, (1, 3), (3, 1)))
+    assert router(net, 1).cache.find(3, net.now) == (1, 3)
+    assert router(net, 3).cache.find(1, net.now) == (3, 1)
+    net.submit(1, 3)
+    net.run(20 * MS)
+    assert [arrived.path for _, arrived in net.delivered] == [(1, 2, 3), (1, 2, 3), (1, 3)]
+
+
+def test_a_route_is_shortened_in_its_middle() -> None:
+    """8.1.5: what comes before and after the needless robots stays."""
+    net = chain("mrsr", 6)
+    net.submit(1, 6)
+    net.run(2_000 * MS)
+    net.links.add(frozenset((2, 5)))
+    net.submit(1, 6)
+    net.run(50 * MS)
+    assert [s.packet for s in net.of(Rrep) if s.sender == 5 and s.target == 2] == [
+        Rrep(0, (1, 2, 5, 6), (5, 2, 1))
+    ]
+    assert router(net, 1).cache.find(6, net.now) == (1, 2, 5, 6)
+
+
+def test_a_weak_link_shortens_no_route() -> None:
+    """3.4.3: a node may reply only when the packet was received well enough."""
+    net = relayed(3.0)
+    assert not net.of(Rrep)
+    assert router(net, 1).cache.find(3, net.now) == (1, 2, 3)
+
+
+def test_gratuitous_replies_are_held_off_for_a_second() -> None:
+    """4.4 and 8.1.5: GratReplyHoldoff, by original sender and transmitter."""
+    net = Net("mrsr", [3], [])
+    router(net, 3).on_heard(1, 20.0, 0)
+    overheard = data(1, (1,), (1, 2, 3))
+    for time_ms in (0, 999, 1000):
+        router(net, 3).on_overheard(overheard, 1, time_ms * MS)
+    assert len(net.of(Rrep)) == 2
+    router(net, 3).on_heard(4, 20.0, 1000 * MS)
+    router(net, 3).on_overheard(data(1, (1, 4), (1, 4, 2, 3)), 4, 1001 * MS)
+    assert net.of(Rrep)[-1].packet == Rrep(0, (1, 4, 3), (3, 4, 1))
 
 
 def test_an_overheard_error_is_heeded() -> None:
@@ -265,6 +334,35 @@ def test_a_broken_link_is_reported_to_the_source() -> None:
     assert all(router(net, robot).cache.find(4, net.now) is None for robot in (1, 2, 3))
 
 
+def test_one_exchange_that_is_given_up_breaks_no_link() -> None:
+    """4.5 and 8.3: what a link gives up is handed to it again; the source hears nothing of it."""
+    net = chain("mrsr", 3)
+    net.submit(1, 3)
+    net.run(2_000 * MS)
+    net.sent.clear()
+    failing = iter([True] * REPEATED_EXCHANGES)
+    net.loss = lambda sender, receiver: (sender, receiver) == (2, 3) and next(failing, False)
+    net.submit(1, 3)
+    net.run(20 * MS)
+    assert not net.of(Rerr)
+    assert not net.of(Rreq)
+    (_, arrived) = net.delivered[-1]
+    assert (arrived.path, arrived.attempts) == ((1, 2, 3), (1, 7 * REPEATED_EXCHANGES + 1))
+
+
+def test_a_link_that_gives_everything_up_is_broken() -> None:
+    """4.5 and 8.3.4: after so many exchanges in a row its source is told."""
+    net = chain("mrsr", 3)
+    net.submit(1, 3)
+    net.run(2_000 * MS)
+    net.links.remove(frozenset((2, 3)))
+    net.sent.clear()
+    net.submit(1, 3)
+    net.run(20 * MS)
+    assert len([s for s in net.of(DataPacket) if s.sender == 2]) == REPEATED_EXCHANGES + 1
+    assert [s.packet for s in net.of(Rerr)] == [Rerr(2, 3, (2, 1))]
+
+
 def test_a_message_is_salvaged_over_another_cached_path() -> None:
     """8.3.6."""
     net = Net("mrsr", [1, 2, 3, 4], [(1, 2), (2, 3), (2, 4), (4, 3)])
@@ -284,6 +382,7 @@ def test_a_message_is_salvaged_fifteen_times_at_most() -> None:
     net = Net("mrsr", [1, 2], [(1, 2)])
     router(net, 2).cache.add((2, 4, 3), 0)
     worn = data(1, (1, 2), (1, 2, 3), salvaged=MAX_SALVAGE)
+    lose_link(net, 2, 3)
     router(net, 2).on_undeliverable(worn.tried(7), 3, DeliveryStatus.BELOW_THRESHOLD, 0)
     assert net.lost == [(worn.message, DeliveryStatus.BELOW_THRESHOLD)]
 
@@ -300,12 +399,12 @@ def test_both_directions_of_a_route_are_learnt_from_data() -> None:
 def test_a_neighbour_that_does_not_take_replies_is_not_heard_for_a_while() -> None:
     """8.2.6 and 4.6: the blacklist."""
     net = Net("mrsr", [1], [])
-    router(net, 1).on_packet(request(1, 8), 8, 0)
+    receive(net, 1, request(1, 8), 8, 0)
     net.run(100 * MS)
-    router(net, 1).on_packet(request(5, 8, number=2), 8, net.now)
+    receive(net, 1, request(5, 8, number=2), 8, net.now)
     net.run(5_100 * MS)
     assert not net.of(Rreq)
-    router(net, 1).on_packet(request(5, 8, number=3), 8, net.now)
+    receive(net, 1, request(5, 8, number=3), 8, net.now)
     net.run(100 * MS)
     assert len(net.of(Rreq)) == 1
 

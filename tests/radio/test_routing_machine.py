@@ -13,7 +13,8 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 
-from radio_proxy.core.routing.mrdv import BUFFER_MESSAGES, MrdvRouter
+from radio_proxy.core.routing.mrdv import MrdvRouter
+from radio_proxy.core.routing.mrdv_limits import BUFFER_MESSAGES
 from radio_proxy.core.routing.mrdv_packets import Rreq
 from radio_proxy.core.routing.mrsr import REQUEST_IDS, SEND_BUFFER, MrsrRouter
 from radio_proxy.core.routing.mrsr_cache import PATHS_PER_DESTINATION
@@ -43,11 +44,16 @@ class RoutingMachine(RuleBasedStateMachine):
         """Called after every single event."""
         raise NotImplementedError
 
-    @rule(source=robots, destination=robots, count=st.integers(1, 4))
-    def submit(self, source: int, destination: int, count: int) -> None:
+    @rule(
+        source=robots,
+        destination=robots,
+        count=st.integers(1, 4),
+        lifetime=st.sampled_from([0, 0, 1, 50, 2000]),
+    )
+    def submit(self, source: int, destination: int, count: int, lifetime: int = 0) -> None:
         if source in self.net.nics and source != destination:
             for _ in range(count):
-                self.net.submit(source, destination)
+                self.net.submit(source, destination, lifetime * MS)
                 self.offered += 1
 
     @rule(seed=st.integers(0, 1000))
@@ -98,6 +104,12 @@ class RoutingMachine(RuleBasedStateMachine):
         arrived = {data.message.number for _, data in self.net.delivered}
         assert len(lost) == len(set(lost))
         assert not arrived & set(lost)
+
+    @invariant()
+    def nothing_waits_for_a_route_beyond_its_lifetime(self) -> None:
+        for message in self.net.messages:
+            waits = message.discovering_since >= 0 and not message.has_verdict
+            assert not waits or message.expires >= self.net.now
 
     @invariant()
     def nobody_asks_more_than_ten_times_a_second(self) -> None:

@@ -122,7 +122,7 @@ def test_observations_are_what_truth_says_and_scans_cannot_be_written() -> None:
 
 def test_what_was_offered_comes_with_the_next_truth_only() -> None:
     ground = world()
-    frame = Transmission(2, b"hello", 800)
+    frame = Transmission(2, b"hello", 800, 0)
     ground.advance({1: action(outbox=(frame,)), 2: action()})
     requests = ground.truth().transmit_requests
     assert [(one.robot, one.outbox, one.remaining_distance) for one in requests] == [

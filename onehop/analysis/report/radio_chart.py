@@ -18,6 +18,7 @@ COLOURS = {
     DeliveryStatus.RECEIVER_BUSY: "#009E73",
     DeliveryStatus.NO_ROUTE: "#56B4E9",
     DeliveryStatus.QUEUE_FULL: "#B8A800",
+    DeliveryStatus.EXPIRED: "#8B5E3C",
     DeliveryStatus.RECEIVER_GONE: "#5B5B5B",
     DeliveryStatus.RELAY_GONE: "#0072B2",
     DeliveryStatus.SENDER_GONE: "#A5A5A5",

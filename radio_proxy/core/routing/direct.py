@@ -24,6 +24,9 @@ class DirectRouter:
         assert isinstance(packet, DataPacket)
         self._nic.deliver(packet, now)
 
+    def on_heard(self, neighbour: RobotId, margin_db: float, now: int) -> None:
+        """How well others are heard says nothing that this protocol uses."""
+
     def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
         """Others' control packets say nothing that this protocol uses."""
 

@@ -61,8 +61,18 @@ class Router(Protocol):
         """A packet arrived from a neighbour; a DataPacket already lists this robot in its path."""
         ...
 
+    def on_heard(self, neighbour: RobotId, margin_db: float, now: int) -> None:
+        """A frame of a neighbour was received. A routing packet or data for a router comes next.
+
+        margin_db: its SINR above the receive threshold [dB].
+        """
+        ...
+
     def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
-        """A control packet for another robot was overheard; `sender` is the neighbour that sent it."""
+        """A packet for another robot was overheard; `sender` is the neighbour that sent it.
+
+        A control packet, or data on its way over that other robot to this one.
+        """
         ...
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:

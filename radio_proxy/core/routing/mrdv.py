@@ -1,59 +1,53 @@
 """MRDV: AODV (RFC 3561) whose ROUTE REQUESTs are passed on with a probability (thesis 3.7.2).
 
-Left out, as the RFC allows: hello messages (6.9, the link layer's feedback is used), local repair
-(6.12), RREP-ACK (6.8: the link layer acknowledges every unicast RREP).
+Left out, as the RFC allows: local repair (6.12), RREP-ACK (6.8: the link layer acknowledges every
+unicast RREP). Hellos (6.9) are in mrdv_hello.py.
 
-Differs: the probability holds during the expanding ring search alone; requests through the whole network
-are normal ones, because waiting for three of them (20 s) before the normal discovery would outlast the
-team. After a restart a robot lets the destination alone reply (6.3, flag D) for DELETE_PERIOD instead of
-keeping silent so long (6.13). Requests are jittered before they are passed on (as RFC 4728 does).
+Differs: the probability holds during the expanding ring search alone; requests through the whole
+network are normal ones, because waiting for three of them (20 s) before the normal discovery would
+outlast the team. After a restart a robot lets the destination alone reply (6.3, flag D) for
+DELETE_PERIOD instead of keeping silent so long (6.13). Requests are jittered before they are passed on
+or repeated (as RFC 4728 does), and one that comes over a link that is not worthwhile (links.py) waits
+for a copy over a better one: a route has to stand, and the fewest hops are the longest ones. For the
+same reason such a link does not take the place of a route over relays (6.2).
 """
 
-from collections import deque
 from dataclasses import dataclass, field, replace
 
 from onehop.contracts.messages import DeliveryStatus
 from onehop.contracts.serial_numbers import following, newer, newest
 from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import MAX_DISCOVERIES, DataPacket
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
 from radio_proxy.core.routing.interface import NicServices
-from radio_proxy.core.routing.mrdv_packets import RREP_BYTES, RREQ_BYTES, Rerr, Rrep, Rreq, rerr_bytes
-from radio_proxy.core.routing.mrdv_table import ACTIVE_ROUTE_NS, DELETE_PERIOD_NS, MS, Route, RouteTable
-
-# Timers and limits of RFC 3561, section 10, under its names.
-
-NODE_TRAVERSAL_NS = 40 * MS
-"""Time of a hop, waiting and processing included [ns]."""
-
-NET_DIAMETER = 35
-"""Most hops between two robots."""
-
-NET_TRAVERSAL_NS = 2 * NODE_TRAVERSAL_NS * NET_DIAMETER
-"""How long a request through the whole network waits for its reply [ns]."""
-
-PATH_DISCOVERY_NS = 2 * NET_TRAVERSAL_NS
-"""How long a request is remembered, lest it be passed on twice [ns]."""
-
-MY_ROUTE_NS = 2 * ACTIVE_ROUTE_NS
-"""Lifetime that a destination gives the route to itself [ns]."""
-
-TTL_START, TTL_INCREMENT, TTL_THRESHOLD = 1, 2, 7
-"""The expanding ring search: first ring, step and last ring [hops]."""
-
-TIMEOUT_BUFFER = 2
-"""Hops that the timeout of a ring allows for congestion."""
-
-RREQ_RETRIES = 2
-"""Repetitions of a request through the whole network."""
-
-RATE_LIMIT = 10
-"""RREQ_RATELIMIT and RERR_RATELIMIT: packets of each kind that a robot originates [1/s]."""
-
-SECOND_NS = 1000 * MS
-
-BUFFER_MESSAGES = 64
-"""Messages that wait for routes; the newest is dropped when it is full (size of RFC 4728, 4.2)."""
+from radio_proxy.core.routing.links import Links
+from radio_proxy.core.routing.mrdv_hello import Hellos
+from radio_proxy.core.routing.mrdv_limits import (
+    BUFFER_MESSAGES,
+    MY_ROUTE_NS,
+    NET_DIAMETER,
+    NET_TRAVERSAL_NS,
+    NODE_TRAVERSAL_NS,
+    RREQ_RETRIES,
+    TIMEOUT_BUFFER,
+    TTL_INCREMENT,
+    TTL_START,
+    TTL_THRESHOLD,
+    WEAK_REQUEST_WAIT_NS,
+    RateLimit,
+    SeenRequests,
+)
+from radio_proxy.core.routing.mrdv_packets import (
+    RREP_BYTES,
+    RREQ_BYTES,
+    Hello,
+    Rerr,
+    Rrep,
+    Rreq,
+    rerr_bytes,
+)
+from radio_proxy.core.routing.mrdv_table import ACTIVE_ROUTE_NS, DELETE_PERIOD_NS, Route, RouteTable
 
 
 @dataclass(slots=True, eq=False)
@@ -71,22 +65,26 @@ class RouteDiscovery:
 
 
 class MrdvRouter:
-    """AODV on one robot."""
+    """AODV on one robot. hello_period: of its broadcast hellos, 0 for none [ns]."""
 
-    def __init__(self, nic: NicServices, gamma_distance: float, now: int) -> None:
+    def __init__(self, nic: NicServices, gamma_distance: float, now: int, hello_period: int = 0) -> None:
         self.table = RouteTable()
         self._nic = nic
         self._me = nic.robot
+        self._links = Links()
         self._gamma_distance = gamma_distance
         self._sequence = nic.incarnation << 16
         self._number = nic.incarnation << 16
         self._reboot_hold_until = now + DELETE_PERIOD_NS if nic.incarnation else now
         self._discoveries: dict[RobotId, RouteDiscovery] = {}
         self.buffered = 0
-        self._seen: dict[tuple[RobotId, int], int] = {}
-        self._requests: deque[int] = deque()
-        self._errors: deque[int] = deque()
+        self._seen = SeenRequests()
+        self._requests = RateLimit()
+        self._errors = RateLimit()
         self._blacklist: dict[RobotId, int] = {}
+        self._hellos = Hellos(
+            nic, self._links, self.table, lambda: self._sequence, self._on_lost, hello_period, now
+        )
 
     def submit(self, data: DataPacket, now: int) -> None:
         if data.message.destination in self._discoveries or not self._forward_data(data, now):
@@ -104,36 +102,68 @@ class MrdvRouter:
             self._on_rreq(packet, sender, now)
         elif isinstance(packet, Rrep):
             self._on_rrep(packet, sender, now)
+        elif isinstance(packet, Hello):
+            self._hellos.on_hello(packet, sender, now)
         elif isinstance(packet, Rerr):
             self._report_broken(self.table.apply_rerr(sender, packet.lost, now), now)
         self._send_buffered(sender, now)
 
+    def on_heard(self, neighbour: RobotId, margin_db: float, now: int) -> None:
+        self._links.on_heard(neighbour, margin_db, now)
+        self._hellos.on_heard(neighbour, now)
+
     def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
-        """Others' control packets say nothing that this protocol uses."""
+        """Others' packets say nothing that this protocol uses but that they were heard."""
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:
         """The timeout of a request counts from its origination (RFC 3561, 6.3)."""
+        if not isinstance(packet, Hello):
+            self._hellos.on_broadcast(now)
 
-    def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:  # noqa: ARG002
+    def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:
+        self._links.on_acknowledged(next_hop)
+        if isinstance(packet, Hello):
+            self._hellos.on_acknowledged(packet, now)
         self.table.refresh(next_hop, now)
 
     def on_undeliverable(
         self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
     ) -> None:
-        """Link-layer feedback: the neighbour is gone (RFC 3561, 6.10 and 6.11 case i)."""
-        self._report_broken(self.table.break_link(next_hop, now), now)
+        """Link-layer feedback (RFC 3561, 6.10); what a link gave up is handed to it again at first."""
+        again = self._links.on_given_up(packet, next_hop)
+        if again is None:
+            self._on_broken(packet, next_hop, cause, now)
+        elif isinstance(again, DataPacket):
+            if not self._forward_data(again, now):
+                self._find_another_route(packet, cause, now)
+        elif isinstance(again, Rrep):
+            self._nic.send(again, next_hop, RREP_BYTES, "rrep", now)
+        elif isinstance(again, Rerr):
+            self._nic.send(again, next_hop, rerr_bytes(len(again.lost)), "rerr", now)
+
+    def _on_broken(self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int) -> None:
+        """The neighbour is gone (RFC 3561, 6.11 case i)."""
+        self._on_lost(next_hop, now)
         if isinstance(packet, Rrep):
             self._blacklist[next_hop] = now + RREQ_RETRIES * NET_TRAVERSAL_NS
+        self._find_another_route(packet, cause, now)
+
+    def _find_another_route(self, packet: object, cause: DeliveryStatus, now: int) -> None:
+        """The source looks for another route once; who has no other gives its data up."""
         if not isinstance(packet, DataPacket):
             return
         if packet.message.source == self._me and packet.message.discoveries < MAX_DISCOVERIES:
-            self.submit(replace(packet, attempts=()), now)
+            self.submit(packet.afresh(), now)
         else:
             self._nic.drop(packet, cause)
+
+    def _on_lost(self, neighbour: RobotId, now: int) -> None:
+        self._report_broken(self.table.break_link(neighbour, now), now)
 
     # DataPacket.
 
     def _on_data(self, data: DataPacket, sender: RobotId, now: int) -> None:
+        self._hellos.on_data(now)
         self.table.update_neighbour(sender, now)
         self.table.refresh(data.message.source, now)
         if data.message.destination == self._me:
@@ -150,19 +180,31 @@ class MrdvRouter:
         route = self.table.usable(message.destination, now)
         if route is None or len(data.path) > NET_DIAMETER:
             return False
+        self._hellos.on_data(now)
         self.table.refresh(message.destination, now)
         self.table.refresh(route.next_hop, now)
         if not self._nic.send(data, route.next_hop, message.msdu_bytes, "", now):
             self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
         return True
 
+    def _update_neighbour(self, neighbour: RobotId, now: int) -> None:
+        """A packet came from a neighbour (RFC 3561, 6.2)."""
+        route = self.table.usable(neighbour, now)
+        if route is None or route.hops == 1 or self._links.is_worthwhile(neighbour, now):
+            self.table.update_neighbour(neighbour, now)
+
     # Discovery by the origin.
 
     def _buffer(self, data: DataPacket, now: int) -> None:
+        if data.message.expires <= now:
+            self._nic.drop(data, DeliveryStatus.EXPIRED)
+            return
         if self.buffered >= BUFFER_MESSAGES:
             self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
             return
         self.buffered += 1
+        if data.message.expires != NEVER:
+            self._nic.at(data.message.expires, self._on_expired, data)
         destination = data.message.destination
         data.message.begin_discovery(now)
         discovery = self._discoveries.get(destination)
@@ -178,7 +220,10 @@ class MrdvRouter:
         """Send the discovery's next request, or wait for the rate limit (RFC 3561, 6.3 and 6.4)."""
         if self._discoveries.get(discovery.destination) is not discovery:
             return
-        wait_until = self._next_allowed(self._requests, now)
+        if not discovery.waiting:
+            self._end_discovery(discovery, now)
+            return
+        wait_until = self._requests.next_allowed(now)
         if wait_until > now:
             self._nic.at(wait_until, self._request_route, discovery)
             return
@@ -197,7 +242,7 @@ class MrdvRouter:
             normal=discovery.ttl > TTL_THRESHOLD,
             destination_only=now < self._reboot_hold_until,
         )
-        self._remember(request, now)
+        self._seen.is_new(request, now)
         self._nic.send(request, BROADCAST, RREQ_BYTES, "rreq", now)
         if discovery.ttl > TTL_THRESHOLD:
             timeout = NET_TRAVERSAL_NS << discovery.network_wide
@@ -205,6 +250,16 @@ class MrdvRouter:
         else:
             timeout = 2 * NODE_TRAVERSAL_NS * (discovery.ttl + TIMEOUT_BUFFER)
         self._nic.at(now + timeout, self._on_no_reply, (discovery, discovery.number))
+
+    def _on_expired(self, data: DataPacket, now: int) -> None:
+        """A message is of no use any more. Its discovery goes on if others come before the next
+        request."""
+        discovery = self._discoveries.get(data.message.destination)
+        if discovery is not None and data in discovery.waiting:
+            discovery.waiting.remove(data)
+            self.buffered -= 1
+            data.message.end_discovery(now)
+            self._nic.drop(data, DeliveryStatus.EXPIRED)
 
     def _on_no_reply(self, requested: tuple[RouteDiscovery, int], now: int) -> None:
         discovery, number = requested
@@ -217,7 +272,8 @@ class MrdvRouter:
         discovery.ttl += TTL_INCREMENT
         if discovery.ttl > TTL_THRESHOLD:
             discovery.ttl = NET_DIAMETER
-        self._request_route(discovery, now)
+        jitter = round(self._nic.uniform() * BROADCAST_JITTER_NS)
+        self._nic.at(now + jitter, self._request_route, discovery)
 
     def _end_discovery(self, discovery: RouteDiscovery, now: int) -> list[DataPacket]:
         del self._discoveries[discovery.destination]
@@ -226,32 +282,21 @@ class MrdvRouter:
             data.message.end_discovery(now)
         return discovery.waiting
 
-    def _next_allowed(self, sent: deque[int], now: int) -> int:
-        """When one more may be sent: now (then it counts), or later (RREQ_ and RERR_RATELIMIT)."""
-        while sent and sent[0] <= now - SECOND_NS:
-            sent.popleft()
-        if len(sent) >= RATE_LIMIT:
-            return sent[0] + SECOND_NS
-        sent.append(now)
-        return now
-
     # Requests, replies and errors of others.
-
-    def _remember(self, request: Rreq, now: int) -> bool:
-        """Note a request; whether it is a new one within PATH_DISCOVERY_TIME (RFC 3561, 6.5)."""
-        while self._seen and next(iter(self._seen.values())) <= now:
-            del self._seen[next(iter(self._seen))]
-        key = (request.origin, request.number)
-        if key in self._seen:
-            return False
-        self._seen[key] = now + PATH_DISCOVERY_NS
-        return True
 
     def _on_rreq(self, request: Rreq, sender: RobotId, now: int) -> None:
         if request.origin == self._me or self._blacklist.get(sender, now) > now:
             return
-        self.table.update_neighbour(sender, now)
-        if not self._remember(request, now):
+        if self._links.is_worthwhile(sender, now):
+            self._take_rreq((request, sender), now)
+        else:
+            self._nic.at(now + WEAK_REQUEST_WAIT_NS, self._take_rreq, (request, sender))
+
+    def _take_rreq(self, received: tuple[Rreq, RobotId], now: int) -> None:
+        """Process a request whose time has come (RFC 3561, 6.5)."""
+        request, sender = received
+        self._update_neighbour(sender, now)
+        if not self._seen.is_new(request, now):
             return
         hops = request.hops + 1
         lifetime = 2 * NET_TRAVERSAL_NS - 2 * hops * NODE_TRAVERSAL_NS
@@ -349,7 +394,7 @@ class MrdvRouter:
     def _send_rerr(
         self, lost: tuple[tuple[RobotId, int], ...], receivers: tuple[RobotId, ...], now: int
     ) -> None:
-        if self._next_allowed(self._errors, now) > now:
+        if self._errors.next_allowed(now) > now:
             return
         target = receivers[0] if len(receivers) == 1 else BROADCAST
         self._nic.send(Rerr(lost), target, rerr_bytes(len(lost)), "rerr", now)

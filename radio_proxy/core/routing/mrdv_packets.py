@@ -47,6 +47,14 @@ class Rrep:
 
 
 @dataclass(frozen=True, slots=True)
+class Hello:
+    """A ROUTE REPLY of a neighbour for the route to itself (6.9): to one receiver or BROADCAST."""
+
+    receiver: RobotId
+    sequence: int
+
+
+@dataclass(frozen=True, slots=True)
 class Rerr:
     """ROUTE ERROR: (destination, sequence) of everything that its sender cannot reach any more."""
 

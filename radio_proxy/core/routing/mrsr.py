@@ -1,15 +1,16 @@
 """MRSR: DSR (RFC 4728) whose ROUTE REQUESTs are passed on with a probability (thesis 3.7.2).
 
-Left out, as the RFC allows: flow state, automatic route shortening, piggybacking. Route maintenance is
-the link layer's acknowledgement (8.3.1); its seven attempts contain MaxMaintRexmt's two.
+Left out, as the RFC allows: flow state, piggybacking. Route maintenance is the link layer's
+acknowledgement (8.3.1): a packet that it gives up is handed to it again (links.py).
 
-Differs: the probability holds for the first propagating request of a discovery; all later ones carry the
-flag for normal forwarding. The source discovers a route for a message twice at most, and its time in the
-send buffer counts from when it was handed over. A robot that waits to reply out of its cache listens for
-others' replies, not for the origin's first data (8.2.5), and routes are learnt from others' replies and
-errors but not from their data (3.3.1), because control packets are the only frames of others that a NIC
-hands up here. A target replies to the copies of a request that came no farther than the first one,
-because in one cell every neighbour passes one on.
+Differs: the probability holds for the first propagating request of a discovery; all later ones carry
+the flag for normal forwarding. The source discovers a route for a message twice at most, and its time
+in the send buffer counts from when it was handed over. A robot that waits to reply out of its cache
+listens for others' replies, not for the origin's first data (8.2.5), and routes are learnt from others'
+replies and errors but not from their data (3.3.1), because a NIC hands up others' data here only to
+those that it is still to come to. A link on which something was overheard is taken for one if it is
+worthwhile (links.py); 3.3.1 and 3.4.3 leave that open. A target replies to the copies of a request that
+came no farther than the first one, because in one cell every neighbour passes one on.
 """
 
 from dataclasses import dataclass, field, replace
@@ -19,6 +20,7 @@ from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.data_message import MAX_DISCOVERIES, DataPacket
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS, forwarding_probability, gamma
 from radio_proxy.core.routing.interface import NicServices
+from radio_proxy.core.routing.links import Links
 from radio_proxy.core.routing.mrsr_cache import RouteCache
 from radio_proxy.core.routing.mrsr_packets import (
     Rerr,
@@ -28,6 +30,7 @@ from radio_proxy.core.routing.mrsr_packets import (
     source_route_bytes,
     without_loops,
 )
+from radio_proxy.core.routing.mrsr_shortening import GratuitousReplies
 
 MS = 1_000_000
 """Nanoseconds in a millisecond."""
@@ -83,6 +86,8 @@ class MrsrRouter:
         self.cache = RouteCache(nic.robot)
         self._nic = nic
         self._me = nic.robot
+        self._links = Links()
+        self._gratuitous = GratuitousReplies(nic.robot)
         self._gamma_distance = gamma_distance
         self._number = nic.incarnation << 16
         self._discoveries: dict[RobotId, RouteDiscovery] = {}
@@ -116,23 +121,34 @@ class MrsrRouter:
         elif isinstance(packet, Rerr):
             self.cache.remove_link(packet.a, packet.b)
             if packet.back[-1] != self._me:
-                self._nic.send(packet, after(packet.back, self._me), packet.size_bytes, "rerr", now)
+                self._send_rerr(packet, now)
+
+    def on_heard(self, neighbour: RobotId, margin_db: float, now: int) -> None:
+        self._links.on_heard(neighbour, margin_db, now)
 
     def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
-        """Others' replies and errors teach as one's own do (RFC 4728, 3.3.1).
+        """Others' replies and errors teach as one's own do (RFC 4728, 3.3.1); data shortens routes.
 
         A reply that is as short as the one that waits here makes that one needless (8.2.5).
         """
+        if isinstance(packet, Rerr):
+            self.cache.remove_link(packet.a, packet.b)
+            return
         if isinstance(packet, Rrep):
             mine = self._pending_replies.get((packet.found[0], packet.number))
             if mine is not None and len(packet.found) <= mine:
                 del self._pending_replies[packet.found[0], packet.number]
+        if not self._links.is_worthwhile(sender, now):
+            return
+        if isinstance(packet, Rrep):
             here = packet.found.index(sender)
             self.cache.add((self._me, *packet.found[here:]), now)
             self.cache.add((self._me, *packet.found[here::-1]), now)
             self._send_buffered(now)
-        elif isinstance(packet, Rerr):
-            self.cache.remove_link(packet.a, packet.b)
+        elif isinstance(packet, DataPacket):
+            reply = self._gratuitous.reply_to(packet, sender, now)
+            if reply is not None:
+                self._send_rrep(reply, now)
 
     def on_broadcast_sent(self, packet: object, now: int) -> None:
         """The timeout of a request counts from its transmission."""
@@ -142,12 +158,27 @@ class MrsrRouter:
                 self._nic.at(now + discovery.timeout, self._request_route, discovery)
 
     def on_acknowledged(self, packet: object, next_hop: RobotId, now: int) -> None:
-        """A confirmed link needs no mark: a path holds until it fails or is too old."""
+        """The link holds; a reply has come a hop of the way that it takes (RFC 4728, 8.1.4)."""
+        self._links.on_acknowledged(next_hop)
+        if isinstance(packet, Rrep):
+            self._cache_route(packet.back, now)
 
     def on_undeliverable(
         self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int
     ) -> None:
-        """The link is broken: forget it, tell the source, salvage (RFC 4728, 8.3.4 and 8.3.6)."""
+        """A link that is broken is forgotten, its source told, its data salvaged (RFC 4728, 8.3)."""
+        again = self._links.on_given_up(packet, next_hop)
+        if isinstance(again, DataPacket):
+            self._send_on(again, now)
+        elif isinstance(again, Rrep):
+            self._send_rrep(again, now)
+        elif isinstance(again, Rerr):
+            self._send_rerr(again, now)
+        else:
+            self._on_broken(packet, next_hop, cause, now)
+
+    def _on_broken(self, packet: object, next_hop: RobotId, cause: DeliveryStatus, now: int) -> None:
+        """Forget the link, tell the source, salvage (RFC 4728, 8.3.4 and 8.3.6)."""
         self.cache.remove_link(self._me, next_hop)
         if isinstance(packet, Rrep):
             self._blacklist[next_hop] = now + BLACKLIST_NS
@@ -156,16 +187,18 @@ class MrsrRouter:
         at_origin = packet.message.source == self._me
         if not at_origin:
             back = without_loops(packet.path)[::-1]
-            error = Rerr(self._me, next_hop, back)
             if len(back) > 1:
-                self._nic.send(error, back[1], error.size_bytes, "rerr", now)
-        again = replace(packet, attempts=packet.attempts[:-1], salvaged=packet.salvaged + 1)
+                self._send_rerr(Rerr(self._me, next_hop, back), now)
+        again = replace(packet.afresh(), salvaged=packet.salvaged + 1)
         if again.salvaged <= MAX_SALVAGE and self._send_along_cache(again, now):
             return
         if at_origin and packet.message.discoveries < MAX_DISCOVERIES:
             self._buffer(again, now)
         else:
             self._nic.drop(packet, cause)
+
+    def _send_rerr(self, error: Rerr, now: int) -> None:
+        self._nic.send(error, after(error.back, self._me), error.size_bytes, "rerr", now)
 
     # DataPacket.
 
@@ -201,13 +234,16 @@ class MrsrRouter:
     # Discovery by the origin.
 
     def _buffer(self, data: DataPacket, now: int) -> None:
+        if data.message.expires <= now:
+            self._nic.drop(data, DeliveryStatus.EXPIRED)
+            return
         if self.buffered >= SEND_BUFFER:
             self._nic.drop(data, DeliveryStatus.QUEUE_FULL)
             return
         self.buffered += 1
         data.message.begin_discovery(now)
-        deadline = data.message.offered + SEND_BUFFER_TIMEOUT_NS
-        self._nic.at(max(now, deadline), self._on_buffer_timeout, data)
+        deadline = max(now, data.message.offered + SEND_BUFFER_TIMEOUT_NS)
+        self._nic.at(min(deadline, data.message.expires), self._on_buffer_timeout, data)
         target = data.message.destination
         discovery = self._discoveries.get(target)
         if discovery is not None:
@@ -220,8 +256,9 @@ class MrsrRouter:
         """The next request: to the neighbours, then to all, ever more rarely (RFC 4728, 8.2.1)."""
         if self._discoveries.get(discovery.target) is not discovery:
             return
-        if discovery.sent > MAX_REQUESTS:
-            self._give_up(list(discovery.waiting), now)
+        if not discovery.waiting or discovery.sent > MAX_REQUESTS:
+            for data in self._end_discovery(discovery, now):
+                self._nic.drop(data, DeliveryStatus.NO_ROUTE)
             return
         self._number += 1
         first = discovery.sent == 0
@@ -240,21 +277,23 @@ class MrsrRouter:
             self._nic.at(now + discovery.timeout, self._request_route, discovery)
 
     def _on_buffer_timeout(self, data: DataPacket, now: int) -> None:
+        """A message has waited long enough; others may come before the next request of its discovery."""
         discovery = self._discoveries.get(data.message.destination)
-        if discovery is not None and data in discovery.waiting:
-            self._give_up([data], now)
+        if discovery is None or data not in discovery.waiting:
+            return
+        self._unbuffer(data, discovery, now)
+        expired = data.message.expires <= now
+        self._nic.drop(data, DeliveryStatus.EXPIRED if expired else DeliveryStatus.NO_ROUTE)
 
-    def _give_up(self, waiting: list[DataPacket], now: int) -> None:
-        for data in waiting:
-            self._unbuffer(data, now)
-            self._nic.drop(data, DeliveryStatus.NO_ROUTE)
+    def _end_discovery(self, discovery: RouteDiscovery, now: int) -> tuple[DataPacket, ...]:
+        del self._discoveries[discovery.target]
+        waited = tuple(discovery.waiting)
+        for data in waited:
+            self._unbuffer(data, discovery, now)
+        return waited
 
-    def _unbuffer(self, data: DataPacket, now: int) -> None:
-        """A message leaves the send buffer; with the last one its discovery ends."""
-        discovery = self._discoveries[data.message.destination]
+    def _unbuffer(self, data: DataPacket, discovery: RouteDiscovery, now: int) -> None:
         discovery.waiting.remove(data)
-        if not discovery.waiting:
-            del self._discoveries[discovery.target]
         self.buffered -= 1
         data.message.end_discovery(now)
 
@@ -264,10 +303,7 @@ class MrsrRouter:
             return
         for target in sorted(self._discoveries):
             if self.cache.find(target, now) is not None:
-                found = tuple(self._discoveries[target].waiting)
-                for data in found:
-                    self._unbuffer(data, now)
-                for data in found:
+                for data in self._end_discovery(self._discoveries[target], now):
                     self.submit(data, now)
 
     # Requests and replies of others.

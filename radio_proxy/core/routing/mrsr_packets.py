@@ -46,7 +46,7 @@ class Rreq:
 class Rrep:
     """ROUTE REPLY: `found` leads from origin to target, `back` from the replier to the origin.
 
-    number: of the request that it replies to.
+    number: of the request that it replies to, 0 if nobody asked (3.4.3).
     """
 
     number: int

@@ -13,11 +13,13 @@ PROTOCOL_NOTES = NOTES // 2
 class Outbox:
     """Collects what is said until it is taken, once a tick; no more than a robot may say in one.
 
-    Others could make it say more: every command asks for an answer.
+    Others could make it say more: every command asks for an answer. lifetime_ns: how long a message is
+    of use, unless it says so itself.
     """
 
-    def __init__(self, limits: ActionLimits) -> None:
+    def __init__(self, limits: ActionLimits, lifetime_ns: int) -> None:
         self._limits = limits
+        self._lifetime_ns = lifetime_ns
         self._outbox: list[Transmission] = []
         self._notes: list[Note] = []
 
@@ -25,11 +27,21 @@ class Outbox:
         """Hand a message for one robot, or for everyone, to the NIC."""
         self.send_to((robot,), message, msdu_bytes)
 
-    def send_to(self, robots: Sequence[int], message: TeamMessage, msdu_bytes: int) -> None:
-        """The same message for several robots, in this order. msdu_bytes: least size on the air."""
+    def send_to(
+        self,
+        robots: Sequence[int],
+        message: TeamMessage,
+        msdu_bytes: int,
+        lifetime_ns: int | None = None,
+    ) -> None:
+        """The same message for several robots, in this order.
+
+        msdu_bytes: least size on the air. lifetime_ns: 0 for ever, None as long as others.
+        """
+        lifetime_ns = self._lifetime_ns if lifetime_ns is None else lifetime_ns
         payload = encode(message)
         size = max(msdu_bytes, len(payload))
-        self._outbox += [Transmission(robot, payload, size) for robot in robots]
+        self._outbox += [Transmission(robot, payload, size, lifetime_ns) for robot in robots]
 
     def note(self, kind: str, **data: NoteValue) -> None:
         """Tell people something."""

@@ -5,10 +5,11 @@ rules.py, how rosters change in election.py. Nothing here moves a robot.
 
 Theory of operation. A robot acts as leader while the roster in force names it. A leader sends a command
 to each follower once a period and counts those that do not answer. A follower that hears no leader for
-`leader_timeout` elects from the list that it has, and waits for the elected one before it gives that one
-up too. Two leaders that hear each other form the union of their rosters; the union is the same whoever
-forms it, and its leader is its median. Whoever finds that a new roster has another leader tells everyone
-so in a Lost_Follower command (a hand-over), repeated until that leader is heard.
+`leader_timeout` elects from the list that it has, and waits for the elected one before it gives that
+one up too. Two leaders that hear each other form the union of their rosters; the union is the same
+whoever forms it, and its leader is its median. Whoever finds that a new roster has another leader tells
+everyone so in a Lost_Follower command (a hand-over), repeated until that leader is heard. All messages
+are renewed within a period, so none lives longer; a hand-over that is said once lives for ever.
 """
 
 from collections.abc import Iterable, Sequence
@@ -58,10 +59,11 @@ class TeamProtocol:
         self.rules = make_rules(briefing.team)
         self.counters = {"garbled": 0, "stale": 0, "foreign": 0}
         self._team = briefing.team
-        self._outbox = Outbox(ActionLimits(briefing.team.robots))
+        period_ns = nanoseconds(briefing.team.next_period)
+        self._outbox = Outbox(ActionLimits(briefing.team.robots), lifetime_ns=period_ns)
         self.state = TeamState(briefing, now_ns, pose, self._outbox)
         self._known = frozenset(briefing.team.robots)
-        self._period_ns = nanoseconds(briefing.team.next_period)
+        self._period_ns = period_ns
         self._leader_patience_ns = nanoseconds(briefing.team.leader_timeout)
         self._election = Election(briefing.team, self.rules, self.state, self._outbox, now_ns)
 
@@ -325,4 +327,9 @@ class TeamProtocol:
         if handover is None or handover.due_ns is None or now_ns < handover.due_ns:
             return
         handover.due_ns = now_ns + self._period_ns if self.rules.repeats_handover else None
-        self._outbox.send_to(self.state.followers, handover.command, self._team.next_msdu_bytes)
+        self._outbox.send_to(
+            self.state.followers,
+            handover.command,
+            self._team.next_msdu_bytes,
+            None if self.rules.repeats_handover else 0,
+        )

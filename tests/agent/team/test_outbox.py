@@ -10,15 +10,22 @@ TEAM = (1, 2, 3)
 
 def test_more_answers_than_may_be_sent_are_left_out():
     limits = ActionLimits(TEAM)
-    outbox = Outbox(limits)
+    outbox = Outbox(limits, 2_000)
     for sequence in range(200):
         outbox.send(2, Ack(1, sequence, True, Pose(0.0, 0.0, 0.0)), 60)
     assert len(outbox.take_outbox()) == limits.messages
     assert outbox.take_outbox() == ()
 
 
+def test_messages_live_as_long_as_all_others_unless_they_say_so():
+    outbox = Outbox(ActionLimits(TEAM), 2_000)
+    for lifetime_ns in (None, 0, 7):
+        outbox.send_to((2,), Ack(1, 1, True, Pose(0.0, 0.0, 0.0)), 60, lifetime_ns)
+    assert [one.lifetime_ns for one in outbox.take_outbox()] == [2_000, 0, 7]
+
+
 def test_more_notes_than_may_be_told_are_left_out():
-    outbox = Outbox(ActionLimits(TEAM))
+    outbox = Outbox(ActionLimits(TEAM), 2_000)
     for epoch in range(200):
         outbox.note("joined", epoch=epoch)
     told = outbox.take_notes()

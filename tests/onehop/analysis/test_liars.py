@@ -155,7 +155,7 @@ def flooded(log_path: Path, tmp_path_factory: pytest.TempPathFactory) -> Log:
     at = 30
     messages = dict(ticks[at][1])
     truth, record = decode(Truth, messages["truth"]), decode(RadioRecord, messages["radio"])
-    outbox = (Transmission(0, b"", 0), Transmission(77, b"\xc1", 1)) * (FLOOD // 2)
+    outbox = (Transmission(0, b"", 0, 0), Transmission(77, b"\xc1", 1, 0)) * (FLOOD // 2)
     request = TransmitRequest(LIAR, 0.0, 0.0, outbox)
     others = tuple(one for one in truth.transmit_requests if one.robot != LIAR)
     sent_before = sum(

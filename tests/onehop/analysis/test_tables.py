@@ -50,7 +50,7 @@ def test_verdicts_have_times_in_seconds_and_no_arrival_when_lost() -> None:
 
 
 def test_every_message_of_an_outbox_is_a_transmit_request_of_its_robot() -> None:
-    outbox = Transmission(BROADCAST, b"a", 60), Transmission(4, b"bc", 800)
+    outbox = Transmission(BROADCAST, b"a", 60, 0), Transmission(4, b"bc", 800, 0)
     requests = (TransmitRequest(3, 0.5, 9.0, outbox), TransmitRequest(4, 0.5, 9.0, ()))
     truth = Truth(7, 7 * PERIOD_NS, (), requests, (), (), (), ())
     table = build(("transmit_requests",), [Selected(7, "truth", encode(truth))], PERIOD_NS)

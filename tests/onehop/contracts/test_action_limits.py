@@ -90,14 +90,16 @@ def test_a_robot_that_joins_may_have_no_leader() -> None:
     ("transmission", "said"),
     [
         (
-            Transmission(2, b"", 2**40),
+            Transmission(2, b"", 2**40, 0),
             "a message of 1099511627776 bytes on the air; a frame carries 2304",
         ),
-        (Transmission(2, b"", -1), "a message of -1 bytes"),
-        (Transmission(BROADCAST, bytes(60_000), 60_000), "a message of 60000 bytes"),
-        (Transmission(2, b"four", 3), "a payload of 4 bytes in 3 bytes on the air"),
-        (Transmission(-1, b"", 10), "a message to robot -1"),
-        (Transmission(2**63, b"", 10), "a message to robot 9223372036854775808"),
+        (Transmission(2, b"", -1, 0), "a message of -1 bytes"),
+        (Transmission(2, b"", 10, -1), "a message that lives for -1 ns"),
+        (Transmission(2, b"", 10, 2**63), "a message that lives for 9223372036854775808 ns"),
+        (Transmission(BROADCAST, bytes(60_000), 60_000, 0), "a message of 60000 bytes"),
+        (Transmission(2, b"four", 3, 0), "a payload of 4 bytes in 3 bytes on the air"),
+        (Transmission(-1, b"", 10, 0), "a message to robot -1"),
+        (Transmission(2**63, b"", 10, 0), "a message to robot 9223372036854775808"),
     ],
 )
 def test_a_message_that_no_frame_carries_is_named(transmission: Transmission, said: str) -> None:
@@ -105,11 +107,11 @@ def test_a_message_that_no_frame_carries_is_named(transmission: Transmission, sa
 
 
 def test_the_longest_message_is_carried() -> None:
-    assert saying(outbox=(Transmission(BROADCAST, bytes(MSDU_BYTES), MSDU_BYTES),)) is None
+    assert saying(outbox=(Transmission(BROADCAST, bytes(MSDU_BYTES), MSDU_BYTES, 0),)) is None
 
 
 def test_a_broadcast_counts_once_for_each_other_robot() -> None:
-    one, all_of_them = Transmission(2, b"", 10), Transmission(BROADCAST, b"", 10)
+    one, all_of_them = Transmission(2, b"", 10, 0), Transmission(BROADCAST, b"", 10, 0)
     assert LIMITS.messages == 88
     assert saying(outbox=(one,) * 88) is None
     assert saying(outbox=(one,) * 89) == "89 messages in a tick; 88 may be sent"
@@ -120,7 +122,7 @@ def test_a_broadcast_counts_once_for_each_other_robot() -> None:
 @given(st.lists(st.sampled_from((BROADCAST, 2, 5)), max_size=200), st.integers(1, 12))
 def test_what_fits_is_the_longest_beginning_that_may_be_sent(to: list[int], robots: int) -> None:
     limits = ActionLimits(range(1, robots + 1))
-    outbox = [Transmission(robot, b"x", 10) for robot in to]
+    outbox = [Transmission(robot, b"x", 10, 0) for robot in to]
     status = msgspec.structs.replace(STATUS, leader=1, members=(1,))
 
     def is_sent(messages: list[Transmission]) -> bool:
@@ -172,7 +174,7 @@ def test_no_action_within_the_limits_is_longer_than_its_limit(robots: int) -> No
     values: dict[str, Any] = {f"{longest}{i}": "\U0001f916" * NOTE_TEXT for i in range(NOTE_VALUES - 1)}
     values[longest] = (2**63 - 1,) * robots
     status = msgspec.structs.replace(STATUS, epoch=LIMIT - 1, leader=ids[0], members=ids)
-    one = Transmission(2**63 - 1, bytes(MSDU_BYTES), MSDU_BYTES)
+    one = Transmission(2**63 - 1, bytes(MSDU_BYTES), MSDU_BYTES, 0)
     action = Action(
         7, 1, ACTION.twist, (one,) * limits.messages, 1.0, 1.0, status, (Note("z" * 32, values),) * NOTES
     )

@@ -30,15 +30,15 @@ LIES: dict[str, tuple[Lie, str]] = {
     "a twist that is no number": (changed(twist=Twist(math.nan, 0.0)), "twist.v is nan, not a number"),
     "a twist without end": (changed(twist=Twist(0.0, math.inf)), "twist.w is inf, not a number"),
     "a frame that holds the air for ever": (
-        changed(outbox=(Transmission(BROADCAST, b"", 2**40),)),
+        changed(outbox=(Transmission(BROADCAST, b"", 2**40, 0),)),
         "a message of 1099511627776 bytes on the air",
     ),
     "a broadcast of 60 kB": (
-        changed(outbox=(Transmission(BROADCAST, bytes(60_000), 60_000),)),
+        changed(outbox=(Transmission(BROADCAST, bytes(60_000), 60_000, 0),)),
         "a message of 60000 bytes on the air",
     ),
     "100,000 messages": (
-        changed(outbox=(Transmission(1, b"", 10),) * 100_000),
+        changed(outbox=(Transmission(1, b"", 10, 0),) * 100_000),
         "100000 messages in a tick; 80 may be sent",
     ),
     "notes that nobody should see": (
