@@ -10,8 +10,10 @@ from onehop.contracts.messages import DeliveryStatus
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.randomness import generator
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.emission import Emission
 from radio_proxy.core.fast_fading import fast_fading
 from radio_proxy.core.link_budget import link_budget
+from radio_proxy.core.link_rules import link_rules
 from radio_proxy.core.medium import Medium
 from radio_proxy.core.propagation import Propagation
 from radio_proxy.core.shadowing import shadowing
@@ -93,8 +95,8 @@ def test_carrier_sense_is_asked_of_shadows_and_fades(
         fields = shadowing(link_budget(section), SEED), fast_fading(section, SEED)
         propagation = Propagation(link_budget(section), (1, 2), (), *fields)
         propagation.update(present((0.0, 0.0), place), (), (), (0, PERIOD))
-        medium = Medium(propagation, Draws(generator(SEED, "radio")))
-        medium.begin(0, None, 0)
+        medium = Medium(propagation, Draws(generator(SEED, "radio")), link_rules(section))
+        medium.begin(Emission(0, 1, 1.0, 8, propagation.snr_row(0, 0), None, 0))
         sensed.append(medium.is_busy(1))
         expected.append(gain(place) > 0.0)
     assert sensed == expected
