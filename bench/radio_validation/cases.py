@@ -25,7 +25,7 @@ class Run:
     """One simulation. places [m]; silent: pairs between which there is no path at all.
 
     Frames: paths of flows, station by station; saturated, or an MSDU every period_s.
-    Messages over a routing protocol ("aodv", "dsr") instead: (time [s], source, destination), and when
+    Messages over a routing protocol ("aodv", "aodv with hellos", "dsr") instead: (time [s], source, destination), and when
     which station moves out of everybody's reach, (station, time [s]).
     """
 
@@ -51,7 +51,9 @@ class Run:
         apart = {frozenset(pair) for pair in self.silent}
         return [
             [
-                None if frozenset((i, j)) in apart else 60.0 - 20.0 * math.log10(max(1.0, math.dist(a, b)))
+                None
+                if frozenset((i, j)) in apart
+                else 60.0 - 20.0 * math.log10(max(1.0, math.dist(a, b)))
                 for j, b in enumerate(self.places)
             ]
             for i, a in enumerate(self.places)
@@ -59,7 +61,7 @@ class Run:
 
     def as_json(self) -> dict[str, Any]:
         """What the ns-3 side is told."""
-        return {**asdict(self), "snr_db": self.snr_db(), "hello": False}
+        return {**asdict(self), "snr_db": self.snr_db()}
 
 
 @dataclass(frozen=True)
@@ -83,12 +85,13 @@ def _flows(name: str, **settings: Any) -> Case:
 
 def links() -> Iterator[Case]:
     """One saturated sender over distance, with log-normal fading of 4 dB a frame and without."""
-    for rate, distances in ((1.0, (5, 8, 10, 12, 15, 20, 25, 30)), (11.0, (5, 8, 10, 12, 15, 20))):
-        for d in distances:
-            seconds = {25: 200.0, 30: 400.0}.get(d, 100.0) / (1.0 if rate == 1.0 else 2.0)
+    slow = {5: 20, 8: 20, 10: 40, 12: 40, 15: 60, 20: 80, 25: 200, 30: 400}
+    fast = {5: 10, 8: 10, 10: 10, 12: 15, 15: 20, 20: 40}
+    for rate, seconds in ((1.0, slow), (11.0, fast)):
+        for d, simulated in seconds.items():
             yield _flows(
                 f"link/{rate:g} Mb/s, RTS/CTS, 4 dB, {d} m",
-                seconds=seconds,
+                seconds=float(simulated),
                 places=((0.0, 0.0), (float(d), 0.0)),
                 paths=((0, 1),),
                 rate_mbps=rate,
@@ -110,7 +113,7 @@ def cells() -> Iterator[Case]:
             for n in (2, 5, 10, 20, 50):
                 yield _flows(
                     f"cell/{n} stations, {rate:g} Mb/s, {access}",
-                    seconds=20.0 if rate == 1.0 else 10.0,
+                    seconds=10.0 if rate == 1.0 else 5.0,
                     places=((0.0, 0.0),) * n,
                     paths=tuple((i, (i + 1) % n) for i in range(n)),
                     rate_mbps=rate,
@@ -120,12 +123,15 @@ def cells() -> Iterator[Case]:
 
 def hidden() -> Iterator[Case]:
     """Two senders that do not hear each other at all, one receiver between them."""
-    for what, left, right in (("equal, 10 and 10 m", 10.0, 10.0), ("near and far, 5 and 10 m", 5.0, 10.0)):
+    for what, left, right in (
+        ("equal, 10 and 10 m", 10.0, 10.0),
+        ("near and far, 5 and 10 m", 5.0, 10.0),
+    ):
         for rate in (1.0, 11.0):
             for access, threshold in ACCESS:
                 yield _flows(
                     f"hidden/{what}, {rate:g} Mb/s, {access}",
-                    seconds=100.0 if rate == 1.0 else 40.0,
+                    seconds=80.0 if rate == 1.0 else 20.0,
                     places=((-left, 0.0), (0.0, 0.0), (right, 0.0)),
                     paths=((0, 1), (2, 1)),
                     silent=((0, 2),),
@@ -139,7 +145,7 @@ def exposed() -> Iterator[Case]:
     for access, threshold in ACCESS:
         yield _flows(
             f"exposed/1 Mb/s, {access}",
-            seconds=40.0,
+            seconds=20.0,
             places=((0.0, 0.0), (10.0, 0.0), (30.0, 0.0), (40.0, 0.0)),
             paths=((1, 0), (2, 3)),
             silent=((0, 2), (0, 3), (1, 3)),
@@ -158,7 +164,7 @@ def chains() -> Iterator[Case]:
             for access, threshold in ACCESS:
                 yield _flows(
                     f"chain/{hops} hops, {what}, {access}",
-                    seconds=100.0 if what == "hidden" else 40.0,
+                    seconds=80.0 if what == "hidden" else 20.0,
                     places=tuple((20.0 * i, 0.0) for i in range(hops + 1)),
                     paths=(tuple(range(hops + 1)),),
                     carrier_sense_db=sense_db,
@@ -172,26 +178,30 @@ def reuse() -> Iterator[Case]:
         for access, threshold in ACCESS:
             yield _flows(
                 f"reuse/{separation:g} m apart, {access}",
-                seconds=40.0,
+                seconds=20.0,
                 places=((0.0, 0.0), (10.0, 0.0), (0.0, separation), (10.0, separation)),
                 paths=((0, 1), (2, 3)),
                 rts_threshold_bytes=threshold,
             )
 
 
-PROTOCOLS = (("MRDV, AODV", "aodv"), ("MRSR, DSR", "dsr"))
+AODV = ("AODV / MRDV", "aodv")
+AODV_WITH_HELLOS = ("AODV with hellos / MRDV", "aodv with hellos")
+DSR = ("DSR / MRSR", "dsr")
 
 
-def _periodic(count: int, period_s: float, start_s: float, source: int, destination: int) -> Iterator[Any]:
-    return ((start_s + k * period_s, source, destination) for k in range(count))
+def _periodic(
+    count: int, period_s: float, start_s: float, source: int, destination: int
+) -> Iterator[Any]:
+    return ((round(start_s + k * period_s, 9), source, destination) for k in range(count))
 
 
 def route_chains() -> Iterator[Case]:
     """One message every 250 ms over a chain: discovery, then so many milliseconds a hop."""
-    for both, protocol in PROTOCOLS:
-        for hops in (1, 2, 3, 4):
+    for both, protocol in (AODV, DSR):
+        for hops in (2, 3, 4):
             yield _flows(
-                f"route/{both}: {hops} hops",
+                f"route/{hops} hops, {both}",
                 seconds=20.0,
                 places=tuple((20.0 * i, 0.0) for i in range(hops + 1)),
                 protocol=protocol,
@@ -201,12 +211,12 @@ def route_chains() -> Iterator[Case]:
 
 def repairs() -> Iterator[Case]:
     """A ladder; at 10 s the station beside the source leaves, and the way goes over the other side."""
-    for both, protocol in PROTOCOLS:
+    for both, protocol in (AODV_WITH_HELLOS, DSR):
         for hops in (2, 3, 4):
             near = tuple((20.0 * i, 0.0) for i in range(hops + 1))
             far = tuple((20.0 * i, 20.0) for i in range(hops + 1))
             yield _flows(
-                f"repair/{both}: {hops} hops",
+                f"repair/{hops} hops, {both}",
                 seconds=30.0,
                 places=near + far,
                 protocol=protocol,
@@ -243,7 +253,7 @@ def topologies() -> Iterator[Case]:
         for message in _periodic(110, 0.5, 1.0 + 2 * TICK_S * k, source, destination)
     )
     for fading_db in (0.0, 4.0):
-        for both, protocol in PROTOCOLS:
+        for both, protocol in (AODV, AODV_WITH_HELLOS, DSR):
 
             def of(seed: int, fading_db: float = fading_db, protocol: str = protocol) -> Run:
                 return Run(
@@ -256,7 +266,7 @@ def topologies() -> Iterator[Case]:
                 )
 
             what = f"{fading_db:g} dB a frame" if fading_db else "no fading"
-            yield Case(f"random/{both}: {what}", of)
+            yield Case(f"random/{what}, {both}", of)
 
 
 def every_case() -> list[Case]:

@@ -223,7 +223,7 @@ class Messages
         {
             routing_bytes += packet->GetSize();
         }
-        else
+        else if (protocol == DSR)
         {
             source_route_bytes += packet->GetSize() - message_bytes;
         }
@@ -248,6 +248,26 @@ AnswerAtOneMbps(NetDeviceContainer devices)
             if (j != i)
             {
                 manager->RecordDisassociated(Mac48Address::ConvertFrom(devices.Get(j)->GetAddress()));
+            }
+        }
+    }
+}
+
+// Every node knows every other one's MAC address: Onehop's radio has no ARP.
+inline void
+KnowAddresses(NodeContainer nodes, NetDeviceContainer devices, Ipv4InterfaceContainer interfaces)
+{
+    for (uint32_t i = 0; i < nodes.GetN(); ++i)
+    {
+        auto ip = nodes.Get(i)->GetObject<Ipv4L3Protocol>();
+        auto cache = ip->GetInterface(interfaces.Get(i).second)->GetArpCache();
+        for (uint32_t j = 0; j < nodes.GetN(); ++j)
+        {
+            if (j != i)
+            {
+                auto entry = cache->Add(interfaces.GetAddress(j));
+                entry->SetMacAddress(devices.Get(j)->GetAddress());
+                entry->MarkPermanent();
             }
         }
     }

@@ -24,6 +24,8 @@ SILENT_DB = 500.0
 BOLTZMANN = 1.3803e-23
 """As ns-3 has it [J/K]."""
 QUEUE_FRAMES = 64
+AODV = {"aodv": False, "aodv with hellos": True}
+"""Whether AODV sends hello messages (RFC 3561, 6.9), by protocol."""
 ROUTING_START_S = 1.0
 """Routing protocols have started by then; messages are sent from then on [s]."""
 
@@ -65,6 +67,7 @@ def phy(medium, run):
         ("RxNoiseFigure", NOISE_DBM - thermal_dbm),
         ("RxSensitivity", NOISE_DBM + run["reach_db"]),
         ("CcaEdThreshold", NOISE_DBM + run["carrier_sense_db"]),
+        ("CcaSensitivity", NOISE_DBM + run["carrier_sense_db"]),
     ):
         helper.Set(name, ns.DoubleValue(value))
     helper.SetPreambleDetectionModel(
@@ -111,11 +114,11 @@ def stations(run):
 
 
 def network(nodes, devices, run):
-    """IP with AODV or DSR above the devices; no ARP, because Onehop's radio has none."""
+    """IP with AODV or DSR above the devices."""
     internet = ns.InternetStackHelper()
-    if run["protocol"] == "aodv":
+    if run["protocol"] in AODV:
         aodv = ns.AodvHelper()
-        aodv.Set("EnableHello", ns.BooleanValue(run["hello"]))
+        aodv.Set("EnableHello", ns.BooleanValue(AODV[run["protocol"]]))
         internet.SetRoutingHelper(aodv)
     internet.Install(nodes)
     addresses = ns.Ipv4AddressHelper()
@@ -126,7 +129,7 @@ def network(nodes, devices, run):
         main, dsr = ns.DsrMainHelper(), ns.DsrHelper()
         main.Install(dsr, nodes)
         keep += [main, dsr]
-    ns.NeighborCacheHelper().PopulateNeighborCache(devices)
+    cppyy.gbl.onehop.KnowAddresses(nodes, devices, interfaces)
     return interfaces, keep
 
 
@@ -188,7 +191,7 @@ def main():
         run = json.loads(line)
         ns.RngSeedManager.SetSeed(1)
         ns.RngSeedManager.SetRun(run["seed"])
-        simulated = messages(run) if "messages" in run else flows(run)
+        simulated = messages(run) if run["protocol"] else flows(run)
         print(json.dumps(simulated), flush=True)
 
 

@@ -28,7 +28,7 @@ from .cases import TICK_S, Run
 
 SECOND_NS = 1_000_000_000
 TICK_NS = round(TICK_S * SECOND_NS)
-ROUTING = {"aodv": "mrdv", "dsr": "mrsr", "": "direct"}
+ROUTING = {"aodv": "mrdv", "aodv with hellos": "mrdv", "dsr": "mrsr", "": "direct"}
 
 
 def section(run: Run) -> RadioSection:
