@@ -8,7 +8,7 @@ names. Without it this program says so and exits with status 77. What ns-3 said 
 --ns3-results, run by run, and simulated again only if the run has changed, so with that file at hand no
 ns-3 is needed. Onehop's side is always simulated anew.
 
-With --docs the tables replace what is between the marks of that page, and the figure is written beside it.
+With --docs the tables replace what is between the marks of that page; the figure is written beside it.
 """
 
 import argparse
@@ -68,9 +68,9 @@ def ask_ns3(
         run, worker = todo[key], workers.get()
         said = worker.simulate(run.as_json())
         workers.put(worker)
-        told = {"error": said["error"]} if "error" in said else {"figures": measures(run, said)}
+        result = {"error": said["error"]} if "error" in said else {"figures": measures(run, said)}
         about = {"case": key[0], "seed": key[1], "run": digest(run), "version": version}
-        return about | told | {"cpu_s": said.get("cpu_s")}
+        return about | result | {"cpu_s": said.get("cpu_s")}
 
     with ThreadPoolExecutor(jobs) as pool:
         yield from pool.map(line, todo)
@@ -83,18 +83,19 @@ def our_figures(run: cases.Run) -> dict[str, float | None]:
     return measures(run, ours.simulate(run))
 
 
-def told(text: str) -> None:
+def say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
 def tabulated(options: argparse.Namespace, rows: list[Row], versions: set[str]) -> str:
     """The tables under a line that says when, with what and by which command."""
     command = shlex.join(["python", "bench/ns3.py", *sys.argv[1:]])
-    about = [
-        f"{datetime.now(UTC):%Y-%m-%d}: Onehop {onehop.__version__} on Python {platform.python_version()}, ",
-        f"ns-3 {', '.join(sorted(versions))}, {options.seeds} seeds a case:\n\n    {command}\n",
-    ]
-    return "".join(about) + "\n" + "\n".join(markdown(rows))
+    python, peer = platform.python_version(), ", ".join(sorted(versions))
+    about = (
+        f"{datetime.now(UTC):%Y-%m-%d}: Onehop {onehop.__version__} on Python {python}, ns-3 {peer}, "
+        f"{options.seeds} seeds a case:\n\n    {command}\n\n"
+    )
+    return about + "\n".join(markdown(rows))
 
 
 def write_page(page: Path, text: str) -> None:
@@ -119,40 +120,50 @@ def arguments() -> argparse.Namespace:
     return parser.parse_args()
 
 
+def what_ns3_said(options: argparse.Namespace, runs: dict[Key, cases.Run]) -> Lines | None:
+    """Of every run: kept from earlier or simulated now; None without ns-3 when something is missing."""
+    theirs = kept(options.ns3_results, runs)
+    todo = {key: run for key, run in runs.items() if key not in theirs}
+    if not todo:
+        return theirs
+    version = installed(options.python)
+    if version is None:
+        return None
+    options.ns3_results.parent.mkdir(parents=True, exist_ok=True)
+    with options.ns3_results.open("a") as file:
+        for number, line in enumerate(ask_ns3(options.python, version, todo, options.jobs), 1):
+            print(json.dumps(line), file=file, flush=True)
+            theirs[line["case"], line["seed"]] = line
+            say(f"ns-3 {number} of {len(todo)}: {line['case']}, seed {line['seed']}")
+    return theirs
+
+
 def main() -> int:
     options = arguments()
     chosen = cases.chosen(options.cases)
     if options.list:
         print("\n".join(case.name for case in chosen))
         return 0
-    runs = {(c.name, seed): c.of(seed) for seed in range(1, options.seeds + 1) for c in chosen}
-    theirs = kept(options.ns3_results, runs)
-    todo = {key: run for key, run in runs.items() if key not in theirs}
-    if todo:
-        version = installed(options.python)
-        if version is None:
-            told(f"ns3: not installed for {options.python} (pip install ns3==3.44; --python PATH)")
-            return NOT_INSTALLED
-        options.ns3_results.parent.mkdir(parents=True, exist_ok=True)
-        with options.ns3_results.open("a") as file:
-            for number, line in enumerate(ask_ns3(options.python, version, todo, options.jobs), 1):
-                print(json.dumps(line), file=file, flush=True)
-                theirs[line["case"], line["seed"]] = line
-                told(f"ns-3 {number} of {len(todo)}: {line['case']}, seed {line['seed']}")
+    seeds = range(1, options.seeds + 1)
+    runs = {(case.name, seed): case.of(seed) for seed in seeds for case in chosen}
+    theirs = what_ns3_said(options, runs)
+    if theirs is None:
+        say(f"ns-3 is not installed for {options.python}: pip install ns3==3.44, or --python PATH")
+        return NOT_INSTALLED
     with ProcessPoolExecutor(options.jobs) as pool:
         own = dict(zip(runs, pool.map(our_figures, runs.values(), chunksize=4), strict=True))
     if options.our_results:
         with options.our_results.open("w") as file:
             for (name, seed), figures in own.items():
                 print(json.dumps({"case": name, "seed": seed, "figures": figures}), file=file)
-    rows = []
-    for case in chosen:
-        keys = [(case.name, seed) for seed in range(1, options.seeds + 1)]
-        answers = [theirs[key] for key in keys]
-        figures = tuple(a["figures"] for a in answers if "figures" in a)
-        rows.append(
-            Row(case.name, figures, tuple(own[key] for key in keys), len(answers) - len(figures))
+    rows = [
+        Row(
+            case.name,
+            tuple(theirs[case.name, seed].get("figures", {}) for seed in seeds),
+            tuple(own[case.name, seed] for seed in seeds),
         )
+        for case in chosen
+    ]
     text = tabulated(options, rows, {line["version"] for line in theirs.values()})
     if options.docs:
         write_page(options.docs, text)

@@ -1,1 +1,1 @@
-"""The radio beside ns-3 3.44: the same stations, noise and thresholds on both (docs/radio-validation.md)."""
+"""The radio beside ns-3 3.44: same stations, noise and thresholds (docs/radio-validation.md)."""

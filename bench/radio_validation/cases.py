@@ -25,8 +25,8 @@ class Run:
     """One simulation. places [m]; silent: pairs between which there is no path at all.
 
     Frames: paths of flows, station by station; saturated, or an MSDU every period_s.
-    Messages over a routing protocol ("aodv", "aodv with hellos", "dsr") instead: (time [s], source, destination), and when
-    which station moves out of everybody's reach, (station, time [s]).
+    Messages over a routing protocol instead ("aodv", "aodv with hellos", "dsr"): (time [s], source,
+    destination), and which station moves out of everybody's reach when, (station, time [s]).
     """
 
     seed: int

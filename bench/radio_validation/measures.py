@@ -89,6 +89,16 @@ class Ratio:
         return 1.0 - tolerance <= self.low and self.high <= 1.0 + tolerance
 
 
+def paired_ratio(pairs: Sequence[tuple[float, float]]) -> Ratio | None:
+    """Geometric mean of ours by theirs over (ours, theirs) of the same topology; None as for `ratio`."""
+    if len(pairs) < 2 or min(min(pair) for pair in pairs) <= 0.0:
+        return None
+    logs = [math.log(ours / theirs) for ours, theirs in pairs]
+    value = math.exp(fmean(logs))
+    width = math.exp(student_t(len(logs) - 1) * math.sqrt(variance(logs) / len(logs)))
+    return Ratio(value, value / width, value * width)
+
+
 def _relative_variance_of_mean(values: Sequence[float]) -> float:
     mean = fmean(values)
     return variance(values) / len(values) / (mean * mean)

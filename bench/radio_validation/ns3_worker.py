@@ -1,11 +1,11 @@
 """The ns-3 side: reads one run as a JSON line, simulates it, answers with a JSON line, until stdin ends.
 
 Run by an interpreter that has the wheel of ns-3 3.44 (`pip install ns3==3.44`); needs nothing of Onehop.
-What it is told: mean SNR of every pair, thresholds over the noise, rates, flows (cases.py). Propagation is
-a matrix of losses, so both simulators have the same SNR to the last digit that counts.
+What it is told: mean SNR of every pair, thresholds over the noise, rates, flows (cases.py). Propagation
+is a matrix of losses, so both simulators have the same SNR.
 
-ns-3 takes the noise of a DSSS receiver over 20 MHz, not 22 (DsssPhy::GetRxChannelWidth); its noise figure
-is set so that the floor is the same. Responses are sent at 1 Mb/s, the only rate of the basic set.
+ns-3 takes the noise of a DSSS receiver over 20 MHz, not 22 (DsssPhy::GetRxChannelWidth); its noise
+figure is set so that the floor is the same. Responses are sent at 1 Mb/s, the one rate of the basic set.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""The same runs on Onehop's radio. Frames: its link layer with static routes; messages: `Radio` in ticks."""
+"""The same runs on Onehop. Frames: its link layer with static routes; messages: `Radio`, in ticks."""
 
 from dataclasses import fields
 from typing import Any

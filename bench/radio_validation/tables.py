@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from statistics import fmean
 
-from .measures import Ratio, ratio
+from .measures import Ratio, paired_ratio, ratio
 
 TOLERANCE = 0.03
 Figures = dict[str, float | None]
@@ -12,12 +12,11 @@ Figures = dict[str, float | None]
 
 @dataclass(frozen=True)
 class Row:
-    """A case and the figures of its runs on both sides; died: runs that ns-3 did not survive."""
+    """A case and the figures of its runs on both sides, seed by seed; none where a run ended ns-3."""
 
     name: str
     theirs: tuple[Figures, ...]
     ours: tuple[Figures, ...]
-    died: int = 0
 
     @property
     def group(self) -> str:
@@ -35,20 +34,28 @@ class Row:
         )
         return theirs, ours
 
+    @property
+    def died(self) -> int:
+        return sum(not run for run in self.theirs)
+
     def ratio(self, figure: str) -> Ratio | None:
-        """Ours by theirs."""
+        """Ours by theirs; topology by topology where the seed is the topology."""
         theirs, ours = self.samples(figure)
-        return ratio(ours, theirs)
+        if self.group != "random":
+            return ratio(ours, theirs)
+        both = zip(
+            (run.get(figure) for run in self.ours), (run.get(figure) for run in self.theirs), strict=True
+        )
+        return paired_ratio([(a, b) for a, b in both if a is not None and b is not None])
 
 
 @dataclass(frozen=True)
 class Column:
-    """A figure of both sides. scale: from the figure to what is shown; spread: least and greatest too."""
+    """A figure of both sides. spread: shown with its least and greatest value."""
 
     title: str
     figure: str
     digits: int
-    scale: float = 1.0
     spread: bool = False
 
     def cell(self, row: Row) -> str:
@@ -57,9 +64,7 @@ class Column:
     def _side(self, values: list[float]) -> str:
         if not values:
             return "–"
-        mean, least, most = (
-            f"{v * self.scale:.{self.digits}f}" for v in (fmean(values), min(values), max(values))
-        )
+        mean, least, most = (f"{v:.{self.digits}f}" for v in (fmean(values), min(values), max(values)))
         return f"{mean} ({least}…{most})" if self.spread and least != most else mean
 
 
@@ -86,8 +91,11 @@ class Section:
     columns: tuple[Column, ...]
 
 
+RATIO_OF = {"mbps": "Mb/s", "p50_ms": "p50", "delivered": "delivered"}
+
+
 def _spread(columns: Sequence[Column]) -> tuple[Column, ...]:
-    return tuple(Column(c.title, c.figure, c.digits, c.scale, spread=True) for c in columns)
+    return tuple(Column(c.title, c.figure, c.digits, spread=True) for c in columns)
 
 
 SECTIONS = (
@@ -111,10 +119,10 @@ SECTIONS = (
     Section(
         "repair",
         "Repair after a relay has left",
-        "p50_ms",
+        "delivered",
         (*ROUTED, Column("repair, ms", "repair_ms", 0), *BYTES),
     ),
-    Section("random", "Ten random topologies", "p50_ms", _spread((*ROUTED, *BYTES))),
+    Section("random", "Ten random topologies", "delivered", _spread((*ROUTED, *BYTES))),
 )
 
 
@@ -139,13 +147,12 @@ def markdown(rows: Sequence[Row]) -> Iterator[str]:
         if not own:
             continue
         titles = [column.title for column in section.columns]
-        unit = "Mb/s" if section.asked == "mbps" else "p50"
         yield from (f"### {section.title}", "", "Each column: ns-3 / Onehop.", "")
-        heads = ["case", *titles, f"ratio of {unit} (95 %)", "within 3 %"]
+        heads = ["case", *titles, f"ratio of {RATIO_OF[section.asked]} (95 %)", "within 3 %"]
         yield f"| {' | '.join(heads)} |"
         yield f"|{'---|' * len(heads)}"
         for row in own:
             cells = [column.cell(row) for column in section.columns]
-            died = f" ({row.died} runs ended ns-3)" if row.died else ""
+            died = f" ({row.died} of {len(row.theirs)} runs ended ns-3)" if row.died else ""
             yield f"| {' | '.join([row.what + died, *cells, *verdict(row, section.asked)])} |"
         yield ""
