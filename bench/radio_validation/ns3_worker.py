@@ -73,9 +73,9 @@ def phy(medium, run):
     helper.SetPreambleDetectionModel(
         "ns3::ThresholdPreambleDetectionModel",
         "Threshold",
-        ns.DoubleValue(run["receive_threshold_db"]),
+        ns.DoubleValue(run["preamble_sinr_db"]),
         "MinimumRssi",
-        ns.DoubleValue(NOISE_DBM - SILENT_DB),
+        ns.DoubleValue(NOISE_DBM + run["receive_threshold_db"]),
     )
     return helper
 

@@ -41,7 +41,7 @@ def section(run: Run) -> RadioSection:
         "receive_threshold_db": run.receive_threshold_db,
         "carrier_sense_db": run.carrier_sense_db,
         "energy_detect_db": run.carrier_sense_db,
-        "preamble_sinr_db": run.receive_threshold_db,
+        "preamble_sinr_db": run.preamble_sinr_db,
         "routing": ROUTING[run.protocol],
         "as_ns3": True,
     }
