@@ -58,7 +58,7 @@ campaign: setup  ## what takes minutes and stays out of CI
 	    || exit 1; done
 
 bench: setup
-	for program in bench/*.py; do $(BIN)/python $$program || exit 1; done
+	for program in bench/*.py; do $(BIN)/python $$program || [ $$? = 77 ] || exit 1; done  # 77: no ns-3 here
 
 fuzz: setup  ## 5,000 mutated scenarios, maps, logs and messages; what went wrong stays in runs/fuzz
 	$(BIN)/python -m tests.fuzz --cases 5000 --seed 1

@@ -1,0 +1,1 @@
+"""The radio beside ns-3 3.44: same stations, noise and thresholds (docs/radio-validation.md)."""
