@@ -1,0 +1,112 @@
+"""Reads a log once, tick by tick, and asks every invariant of every tick; memory does not grow with it."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from onehop.checking.completeness import Completeness, DigestCheck
+from onehop.checking.fault_bit import FaultBit
+from onehop.checking.findings import Findings, Violation
+from onehop.checking.invariants import (
+    COMPLETE,
+    DIGEST,
+    EPOCHS,
+    FAULT_BIT,
+    INVARIANTS,
+    MEDIAN,
+    MOTION,
+    NO_COLLISION,
+    NOT_IN_THESIS,
+    ONE_LEADER,
+    OWN_VOICE,
+    RADIO_INTEGRITY,
+    RE_ELECTION,
+    SHAPE,
+    SILENCE,
+    UNEXERCISED,
+)
+from onehop.checking.leaders import Leadership
+from onehop.checking.motion import Collisions, Motion
+from onehop.checking.radio import RadioIntegrity
+from onehop.checking.snapshot import snapshot
+from onehop.checking.team import Team
+from onehop.checking.voice import Voices
+from onehop.contracts.errors import LogError
+from onehop.wire.log_reader import LogFile
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What was found in one log.
+
+    ticks: that could be read. checked: how often each wanted invariant was judged. broken: how many
+    violations each has, if any. violations: the first of each, in order of invariant and tick.
+    unexercised: what was not judged, and why.
+    """
+
+    ticks: int
+    checked: dict[str, int]
+    broken: dict[str, int]
+    violations: tuple[Violation, ...]
+    unexercised: dict[str, str]
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing was found that breaks an invariant."""
+        return not self.violations
+
+
+def judge(log: LogFile, only: Iterable[str] = ()) -> Report:
+    """Test the invariants of a log, all or those named. A torn one is judged as far as it goes."""
+    scenario, summary = log.bundle.scenario, log.summary
+    wanted = frozenset(only) or frozenset(INVARIANTS)
+    findings = Findings(wanted)
+    period_ns, robots = scenario.clock.period_ns, scenario.team.robots
+    completeness = Completeness(findings, period_ns)
+    digest = DigestCheck(findings)
+    collisions = Collisions(findings, scenario)
+    checks = [
+        check
+        for names, check in (
+            ((COMPLETE,), completeness),
+            ((OWN_VOICE, SILENCE), Voices(findings, robots)),
+            ((MEDIAN, SHAPE, EPOCHS), Team(findings, scenario.team)),
+            ((ONE_LEADER, RE_ELECTION), Leadership(findings, scenario)),
+            ((RADIO_INTEGRITY,), RadioIntegrity(findings, scenario.radio, period_ns)),
+            ((FAULT_BIT,), FaultBit(findings, scenario)),
+            ((NO_COLLISION,), collisions),
+            ((MOTION,), Motion(findings, scenario)),
+        )
+        if wanted.intersection(names)
+    ]
+    last, read = -1, 0
+    try:
+        for logged in log.ticks():
+            now = snapshot(logged, follows=read > 0 and logged.tick == last + 1)
+            last, read = logged.tick, read + 1
+            digest.take(logged.tick, logged.messages)
+            for check in checks:
+                check.take(now)
+    except LogError as error:
+        completeness.on_end_of_reading(error.problem)
+    else:
+        digest.finish(summary)
+        completeness.finish(summary)
+        collisions.finish(summary, is_whole=summary is not None and summary["ticks"] == read)
+    return _report(findings, scenario.team.profile, read)
+
+
+def _report(findings: Findings, profile: str, ticks: int) -> Report:
+    names = [name for name in INVARIANTS if name in findings.wanted]
+    reasons = {**UNEXERCISED, **(NOT_IN_THESIS if profile == "thesis" else {})}
+    order = {name: number for number, name in enumerate(names)}
+    return Report(
+        ticks=ticks,
+        checked={name: findings.checked[name] for name in names},
+        broken={name: findings.broken[name] for name in names if findings.broken[name]},
+        violations=tuple(sorted(findings.violations, key=lambda one: (order[one.invariant], one.tick))),
+        unexercised={
+            name: reasons.get(name, "the log has no tick")
+            for name in names
+            if not findings.checked[name] and not findings.broken[name]
+        },
+    )
