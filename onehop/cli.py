@@ -134,6 +134,26 @@ def replay(
 
 
 @app.command()
+def check(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    only: Annotated[
+        list[str],
+        Option("--only", metavar="ID", help="Only this invariant (repeatable): docs/checking.md."),
+    ] = [],  # noqa: B006
+    as_json: AsJson = False,
+) -> None:
+    """Test from the log alone that every promise held: leaders, epochs, radio, faults, contacts.
+
+    Exit status 1 when an invariant is broken.
+
+    Example: onehop check runs/demo/mission.mcap
+    """
+    from onehop.commands import check as command
+
+    _leave(command.check(log, only, as_json))
+
+
+@app.command()
 def elect(
     ids: Annotated[str, Argument(help="Robot ids, e.g. 1,2,4,5.")],
     narrow: Annotated[bool, Option("--narrow", help="In a narrow passage.")] = False,

@@ -11,7 +11,7 @@ from onehop.wire.journal import Digest, WireMessage
 
 
 class Completeness:
-    """Every tick has its truth and radio record, and of each present robot observation, inbox and action.
+    """Every tick has its truth and radio record; of each present robot observation, inbox and action.
 
     One robot may lack an action: the one that was given up for it, which leaves with the next tick.
     """
@@ -33,7 +33,9 @@ class Completeness:
         self._judge_departures(now)
         for key, value in ((topics.TRUTH, now.truth), (topics.RADIO_RECORD, now.record)):
             if value is None:
-                self._report(now, (), f"{topics.wire(key)} has no message", now.exhibit(key, "no message"))
+                self._report(
+                    now, (), f"{topics.wire(key)} has no message", now.exhibit(key, "no message")
+                )
             else:
                 self._judge_time(now, key, value.time_ns)
         for robot in now.present:

@@ -124,11 +124,11 @@ class FaultBit:
     def _compare(
         self, now: Snapshot, kind: str, due: Counter[Cut | Jam], found: Counter[Cut | Jam]
     ) -> None:
-        for fault in (due - found).keys():
+        for fault in due - found:
             what = f"a {kind} of the script is not in force: {fault}"
             said = now.exhibit(topics.TRUTH, f"no such {kind}")
             self._findings.report_state(FAULT_BIT, now.tick, _robots_of(fault), what, said)
-        for fault in (found - due).keys():
+        for fault in found - due:
             what = f"a {kind} is in force that the script does not have: {fault}"
             said = now.exhibit(topics.TRUTH, str(fault))
             self._findings.report_state(FAULT_BIT, now.tick, _robots_of(fault), what, said)

@@ -8,7 +8,6 @@ from onehop.checking.fault_bit import FaultBit
 from onehop.checking.findings import Findings, Violation
 from onehop.checking.invariants import (
     COMPLETE,
-    DIGEST,
     EPOCHS,
     FAULT_BIT,
     INVARIANTS,

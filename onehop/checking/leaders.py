@@ -12,7 +12,6 @@ from onehop.checking.findings import Exhibit, Findings
 from onehop.checking.invariants import ONE_LEADER, RE_ELECTION
 from onehop.checking.reach import Links
 from onehop.checking.snapshot import Snapshot
-from onehop.contracts.arrays import BoolArray
 from onehop.contracts.messages import Truth
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.team import Mode, Status
@@ -53,6 +52,7 @@ class Leadership:
         self._successor_patience = successor * 1e9 / period_ns
         self._links = Links(team.robots, scenario.radio, next_ns)
         self._statuses: dict[int, Status] = {}
+        self._acting_since: dict[int, int] = {}
         self._sound_since: dict[int, int] = {}
         self._leaderless_since: dict[tuple[int, ...], int] = {}
         self._vacancies: list[_Vacancy] = []
@@ -77,14 +77,16 @@ class Leadership:
         self._judge_vacancies(now, leaders)
 
     def _forget(self) -> None:
-        self._statuses, self._sound_since, self._leaderless_since = {}, {}, {}
+        self._statuses, self._acting_since, self._sound_since = {}, {}, {}
+        self._leaderless_since = {}
         self._vacancies = []
 
     # one-leader
 
     def _judge_two(self, now: Snapshot, leaders: list[int]) -> None:
-        """Of two leaders that hear each other one yields."""
+        """Of two that act as leader and hear each other one yields."""
         tick, links = now.tick, self._links
+        self._acting_since = {robot: self._acting_since.get(robot, tick) for robot in leaders}
         self._sound_since = {
             robot: self._sound_since.get(robot, tick) if self._is_sound(robot, now) else tick + 1
             for robot in leaders
@@ -95,12 +97,13 @@ class Leadership:
             self._findings.count(ONE_LEADER)
         for number, a in enumerate(leaders):
             for b in leaders[:number]:
-                since = int(links.since[links.row[a], links.row[b]])
+                acting = max(self._acting_since[a], self._acting_since[b])
+                since = max(int(links.since[links.row[a], links.row[b]]), acting)
                 sound = max(since, self._sound_since[a], self._sound_since[b])
                 if tick - since >= self._long_bound or tick - sound >= self._bound:
                     heard_s = (tick - since) / self._next_ticks
                     what = (
-                        f"robots {b} and {a} both act as leader and have heard each other for "
+                        f"robots {b} and {a} have both acted as leader and heard each other for "
                         f"{heard_s:.1f} Next periods"
                     )
                     evidence = now.status_of(b), now.status_of(a)
@@ -118,7 +121,7 @@ class Leadership:
         present = sorted(self._statuses)
         if not present or self._covers(leaders, present):
             return
-        for group in self._links.groups(present, lambda: ~self._links.apart):
+        for group in self._links.groups(present):
             if set(group) & set(leaders) or not self._links.are_linked_since(group, now.tick):
                 continue
             key = tuple(group)
@@ -126,7 +129,9 @@ class Leadership:
             named = {one for robot in group for one in self._statuses[robot].members}
             bound = self._bound if named <= set(group) else self._long_bound
             if now.tick - since >= bound:
-                what = f"{len(group)} robots hear each other and have been without a leader since {since}"
+                what = (
+                    f"{len(group)} robots hear each other and have been without a leader since {since}"
+                )
                 evidence = [now.status_of(robot) for robot in group]
                 self._findings.report_state(ONE_LEADER, now.tick, key, what, *evidence)
 
@@ -136,8 +141,8 @@ class Leadership:
         mine = [self._links.row[robot] for robot in leaders]
         if not mine:
             return False
-        near: BoolArray = (~self._links.apart)[np.ix_(rows, mine)].any(axis=1)
-        return bool(near.all())
+        out_of_reach = self._links.apart[np.ix_(rows, mine)].all(axis=1)
+        return not out_of_reach.any()
 
     # re-election
 
@@ -166,7 +171,7 @@ class Leadership:
         open_still = []
         for vacancy in self._vacancies:
             rest = vacancy.rest
-            if not self._links.are_linked_since(rest, vacancy.tick) or not self._links_hold(rest, now):
+            if not self._links.are_linked_since(rest, vacancy.tick):
                 continue
             heads = [self._statuses[robot].leader for robot in rest if robot in self._statuses]
             if any(head in leaders for head in heads):
@@ -176,11 +181,9 @@ class Leadership:
             else:
                 self._findings.count(RE_ELECTION)
                 ticks = now.tick - vacancy.tick
-                what = f"{ticks} ticks after leader {vacancy.leader} left nobody leads those who obeyed it"
+                what = (
+                    f"{ticks} ticks after leader {vacancy.leader} left nobody leads those who obeyed it"
+                )
                 evidence = [vacancy.last_word, *(now.status_of(robot) for robot in rest)]
                 self._findings.report(RE_ELECTION, now.tick, tuple(rest), what, *evidence)
         self._vacancies = open_still
-
-    @staticmethod
-    def _links_hold(rest: list[int], now: Snapshot) -> bool:
-        return all(robot in now.present for robot in rest)

@@ -69,7 +69,9 @@ class Motion:
         if not moved <= far + ROUNDING:
             wrong = f"robot {robot} moved {moved:.4f} m in a tick in which it could move {far:.4f} m"
         elif not turned <= turn + ROUNDING:
-            wrong = f"robot {robot} turned {turned:.4f} rad in a tick in which it could turn {turn:.4f} rad"
+            wrong = (
+                f"robot {robot} turned {turned:.4f} rad in a tick in which it could turn {turn:.4f} rad"
+            )
         if wrong is not None:
             was = f"({before.x:.3f}, {before.y:.3f}), {before.heading:.3f} rad"
             is_now = f"({pose.x:.3f}, {pose.y:.3f}), {pose.heading:.3f} rad"

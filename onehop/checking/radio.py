@@ -135,9 +135,7 @@ class RadioIntegrity:
         self._judge_receptions(now, awaited)
 
     @staticmethod
-    def _await_unknown(
-        verdict: Verdict, now: Snapshot, awaited: Counter[tuple[int, Reception]]
-    ) -> None:
+    def _await_unknown(verdict: Verdict, now: Snapshot, awaited: Counter[tuple[int, Reception]]) -> None:
         """A message from before a gap: its payload is not known, so whatever it is is taken."""
         if verdict.status is not DeliveryStatus.DELIVERED:
             return
@@ -179,7 +177,11 @@ class RadioIntegrity:
             return f"had {sent.msdu_bytes} bytes, not {verdict.msdu_bytes}"
         if verdict.offered_ns != sent.offered_ns:
             return f"was offered at {sent.offered_ns} ns, not {verdict.offered_ns}"
-        if verdict.receiver == verdict.source if is_broadcast else verdict.receiver != verdict.destination:
+        if (
+            verdict.receiver == verdict.source
+            if is_broadcast
+            else verdict.receiver != verdict.destination
+        ):
             return f"was not for robot {verdict.receiver}"
         return None
 

@@ -10,7 +10,6 @@ and a message that is lost ends a link here.
 """
 
 import math
-from collections.abc import Callable
 
 import numpy as np
 
@@ -105,9 +104,9 @@ class Links:
         snr = self._budget.mean_snr_db(distances) - rise[None, :]
         snr[np.isnan(snr)] = -np.inf
         for cut in truth.cuts:
-            one, other = self._rows(cut.side_a), self._rows(cut.side_b)
-            snr[np.ix_(one, other)] = -np.inf
-            snr[np.ix_(other, one)] = -np.inf
+            side_a, side_b = self._rows(cut.side_a), self._rows(cut.side_b)
+            snr[np.ix_(side_a, side_b)] = -np.inf
+            snr[np.ix_(side_b, side_a)] = -np.inf
         weakest = np.minimum(snr, snr.T)
         linked = weakest >= self._budget.threshold_db + MARGIN_DB
         self.apart = np.maximum(snr, snr.T) < self._budget.threshold_db - FARTHEST_FADE_DB
@@ -142,17 +141,17 @@ class Links:
         np.fill_diagonal(block, val=True)
         return len(rows) == len(robots) and bool(block.all())
 
-    def groups(self, robots: list[int], joined: Callable[[], BoolArray]) -> list[list[int]]:
-        """Robots in groups that hang together by a relation between rows."""
-        relation = joined()
-        left, groups = [self.row[robot] for robot in robots if robot in self.row], []
+    def groups(self, robots: list[int]) -> list[list[int]]:
+        """Robots in groups, each out of the reach of all others."""
+        near_each_other = ~self.apart
+        left, groups = self._rows(tuple(robots)), []
         while left:
             group, edge = [], [left.pop(0)]
             while edge:
                 row = edge.pop()
                 group.append(self.robots[row])
-                near = [other for other in left if relation[row, other]]
-                left = [other for other in left if not relation[row, other]]
+                near = [other for other in left if near_each_other[row, other]]
+                left = [other for other in left if other not in near]
                 edge += near
             groups.append(sorted(group))
         return groups

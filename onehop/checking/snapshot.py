@@ -1,6 +1,6 @@
 """One tick of a log as values: what the world said of it, the radio, and every robot.
 
-A message that cannot be read, or lies there twice, is told in `flaws`; the first one of a channel counts.
+A message that cannot be read, or lies there twice, is told in `flaws`; of two the first one counts.
 """
 
 from dataclasses import dataclass, field

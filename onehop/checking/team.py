@@ -70,7 +70,8 @@ class Team:
         if known is not None and known.heard and _same_team(known.status, status):
             return True
         return any(
-            source == status.leader and order.roster.members == status.members for source, order in orders
+            source == status.leader and order.roster.members == status.members
+            for source, order in orders
         )
 
     # median
@@ -81,7 +82,7 @@ class Team:
             self._findings.count(MEDIAN)
             leader = Roster(status.epoch, status.members).leader
             if status.leader != leader:
-                what = f"robot {robot} takes robot {status.leader} for the leader; the median is {leader}"
+                what = f"robot {robot} obeys robot {status.leader}; the median of its team is {leader}"
                 self._findings.report_state(MEDIAN, now.tick, (robot,), what, now.status_of(robot))
         for order in _orders_given(action):
             self._findings.count(MEDIAN)

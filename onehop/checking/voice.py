@@ -82,17 +82,17 @@ class Voices:
                 said = now.exhibit(topics.TRUTH, f"{len(request.outbox)} messages of robot {robot}")
                 self._findings.report(SILENCE, now.tick, (robot,), what, said)
         for robot, presence in now.present.items():
-            action, request = before.get(robot), requests.get(robot)
+            action, handed = before.get(robot), requests.get(robot)
             if action is not None and action.incarnation != presence.incarnation:
                 action = None
-            if not _same(action, request):
+            if not _same(action, handed):
                 what = f"what the world hands to the radio for robot {robot} is not what it said"
-                told = "nothing" if request is None else _in_words(request)
-                said = "nothing" if action is None else _in_words(action)
+                told = "nothing" if handed is None else _in_words(handed)
+                spoken = "nothing" if action is None else _in_words(action)
                 self._findings.report(
                     OWN_VOICE, now.tick, (robot,), what,
                     now.exhibit(topics.TRUTH, told),
-                    now.exhibit(topics.out(robot), f"in the tick before: {said}"),
+                    now.exhibit(topics.out(robot), f"in the tick before: {spoken}"),
                 )  # fmt: skip
 
 
