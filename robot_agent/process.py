@@ -29,12 +29,15 @@ def main() -> int:
 
 def _serve(bus: Bus, robot: Robot, name: str) -> int:
     put = bus.publisher(topics.by(name, topics.OUT))
+    put_awake = bus.publisher(topics.by(name, topics.AWAKE))
     bus.announce(name)
     while True:
         what, data = bus.receive()
         if what == topics.PERCEPT:
             _, ((_, seen), (_, heard)) = unpack_tick(data)
             put(encode(robot.step(percept(decode(Observation, seen), decode(Inbox, heard)))))
+        elif what == topics.WAKE:
+            put_awake(b"")
         elif what == topics.KILL:
             os.kill(os.getpid(), signal.SIGKILL)
         elif what == topics.END:

@@ -38,7 +38,7 @@ class LockStep:
     def _tick(self) -> Outcome | None:
         world = self.world
         truth = world.truth()
-        self.faults.carry_out(truth, world.due_faults())
+        self.faults.carry_out(truth)
         encoded_truth = encode(truth)
         self.radio.send(encoded_truth)
         observations = [(topics.obs(i), encode(seen)) for i, seen in world.observe().items()]

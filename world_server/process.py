@@ -78,7 +78,7 @@ def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str
         world,
         RemoteRadio(bus, mail, silence_s),
         RemoteRobots(bus, mail, roll, robots, silence_s),
-        ProcessFaults(bus, mail, roll, robots, open_briefings),
+        ProcessFaults(bus, mail, roll, robots, open_briefings, silence_s),
         recording,
         ProgressReports(bus),
     )

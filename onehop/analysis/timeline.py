@@ -10,9 +10,9 @@ from msgspec.structs import replace
 
 from onehop.analysis.columns import Column
 from onehop.analysis.tables import Table
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.leadership import LeadershipHistory
 from onehop.contracts.messages import LeadershipTerm
-from onehop.contracts.sections import FaultSection
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import TypeAlias
 
 from onehop.contracts.arrays import Ranges
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.team import Status
 from onehop.contracts.values import Value, Wire
@@ -154,10 +155,11 @@ class Contact(Value, frozen=True):
 
 
 class Cut(Value, frozen=True):
-    """No frame passes between a robot of side_a and a robot of side_b, either way."""
+    """No frame passes from a robot of side_a to one of side_b, nor back unless it is one_way."""
 
     side_a: tuple[int, ...]
     side_b: tuple[int, ...]
+    one_way: bool = False
 
 
 class Jam(Value, frozen=True):
@@ -169,11 +171,28 @@ class Jam(Value, frozen=True):
     noise_dbm: float
 
 
+class Slow(Value, frozen=True):
+    """A robot whose actions take effect late: that of tick k at tick k + delay_ticks."""
+
+    robot: int
+    delay_ticks: int
+
+
+class Corruption(Value, frozen=True):
+    """Payloads that these robots receive are altered with this probability, each by itself."""
+
+    robots: tuple[int, ...]
+    probability: float
+
+
 class Truth(Wire, frozen=True):
     """Ground truth of tick k (key truth): who is where, what is broken, what was offered to the air.
 
     Everything the radio needs for the interval that ends at time_ns is in here, so that radio and
     world can never disagree about who was present. Tuples are sorted by robot id.
+    faults: those that begin with this tick, by script or by hand, in the order in which they were
+    carried out. stopped: present robots whose processes are stopped: without observation, inbox and
+    action. blind: robots whose lasers see nothing. slow, corruptions: in force, as are cuts and jams.
     """
 
     tick: int
@@ -184,6 +203,18 @@ class Truth(Wire, frozen=True):
     jams: tuple[Jam, ...]
     contacts: tuple[Contact, ...]
     departures: tuple[Departure, ...]
+    faults: tuple[FaultSection, ...] = ()
+    stopped: tuple[int, ...] = ()
+    blind: tuple[int, ...] = ()
+    slow: tuple[Slow, ...] = ()
+    corruptions: tuple[Corruption, ...] = ()
+
+
+def running(truth: Truth) -> list[Presence]:
+    """The robots that have an observation, an inbox and an action at this tick."""
+    if not truth.stopped:
+        return list(truth.present)
+    return [one for one in truth.present if one.robot not in truth.stopped]
 
 
 class DeliveryStatus(StrEnum):
@@ -192,12 +223,15 @@ class DeliveryStatus(StrEnum):
     BELOW_THRESHOLD: too weak at the receiver (distance, wall, cut, jam), also without other frames.
     COLLISION: strong enough, had no other frame overlapped it; what the receiver itself sent counts.
     RECEIVER_BUSY: an RTS reached a station that had to stay silent, because others reserved the medium.
-    NO_ROUTE, QUEUE_FULL: at the robot that held it. RECEIVER_GONE: its destination is not in the mission
-    any more, or came back as another process, whatever else failed. RELAY_GONE: the same of a robot on
-    its way, which held it or was to take it next; SENDER_GONE: of its source, which still held it.
+    CORRUPTED: it arrived, with other bytes than were sent, and is of no use to its receiver.
+    NO_ROUTE, QUEUE_FULL: at the robot that held it, or in the NIC of a receiver that is stopped.
+    RECEIVER_GONE: its destination is not in the mission any more, or came back as another process,
+    whatever else failed. RELAY_GONE: the same of a robot on its way, which held it or was to take it
+    next; SENDER_GONE: of its source, which still held it.
     """
 
     DELIVERED = "delivered"
+    CORRUPTED = "corrupted"
     BELOW_THRESHOLD = "below threshold"
     BIT_ERRORS = "bit errors"
     COLLISION = "collision"
@@ -215,7 +249,7 @@ class Verdict(Value, frozen=True):
     message: sequence number, unique per source. receiver: who got it or should have (a broadcast has
     one verdict for each robot present). path: source to last holder, both included.
     attempts: of each hop of the path. Times in ns: offered by the robot, service begun by its link
-    layer, arrival (-1 when lost). discovery_ns, queueing_ns: parts of the delay.
+    layer, arrival (-1 when it never came). discovery_ns, queueing_ns: parts of the delay.
     snr_db, bit_error_rate: of the last attempt of the last hop.
     """
 

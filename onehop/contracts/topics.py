@@ -38,7 +38,20 @@ PART = "part"
 """To or from a robot: the beginning of a message that is longer than its link carries."""
 
 KILL = "kill"
-"""World to robot: a scripted kill, which the robot's process carries out on itself."""
+"""World to robot: a kill by a fault, which the robot's process carries out on itself; world to operator:
+the same of a process that is stopped."""
+
+STOP = "stop"
+"""World to operator: stop the process of this robot (SIGSTOP)."""
+
+CONTINUE = "continue"
+"""World to operator: let the process of this robot go on (SIGCONT)."""
+
+WAKE = "wake"
+"""World to robot: say that you are awake."""
+
+AWAKE = "awake"
+"""Robot to world: the answer to that."""
 
 CARRIED = "carried"
 """Radio to world: the inboxes of tick k of every present robot, and the record of the tick."""

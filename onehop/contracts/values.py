@@ -2,8 +2,9 @@
 
 import msgspec
 
-WIRE_VERSION = 2
-"""Schema version that every wire message starts with; any other is refused by name."""
+WIRE_VERSION = 3
+"""Schema version that every wire message starts with; any other is refused by name. 3: truths tell of
+every fault that begins, and payloads of the team end in a checksum."""
 
 
 class Value(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

@@ -145,6 +145,10 @@ class ProcessGroup:
         self._children[name] = _Child(process, before.incarnation + 1 if before else 0)
         self.processes.append(Process(name, process.pid))
 
+    def send(self, name: str, number: signal.Signals) -> None:
+        """Send a signal to a child, if it still runs."""
+        self._children[name].process.send_signal(number)
+
     def exit_status(self, name: str) -> int | None:
         """Exit status of a child, negative for a signal, None while it runs."""
         return self._children[name].process.poll()

@@ -57,6 +57,7 @@ class TeamProtocol:
         self.robot = briefing.robot
         self.rules = make_rules(briefing.team)
         self.counters = {"garbled": 0, "stale": 0, "foreign": 0}
+        self._garbled_from: set[int] = set()
         self._team = briefing.team
         self._outbox = Outbox(ActionLimits(briefing.team.robots))
         self.state = TeamState(briefing, now_ns, pose, self._outbox)
@@ -130,6 +131,9 @@ class TeamProtocol:
         """
         for reception in inbox:
             self._on_reception(now_ns, pose, in_position, reception)
+        if self._garbled_from:
+            self._outbox.note("garbled", robots=tuple(sorted(self._garbled_from)))
+            self._garbled_from.clear()
         part = self.state.part
         if isinstance(part, Following | Waiting) and part.leader.misses_next(now_ns):
             self.state.events.append(NextMissed())
@@ -139,6 +143,7 @@ class TeamProtocol:
             message = decode(reception.payload)
         except DecodeError:
             self.counters["garbled"] += 1
+            self._garbled_from.add(reception.source)
             return
         source = reception.source
         if source == self.robot or source not in self._known:
