@@ -11,7 +11,7 @@ from onehop.wire.journal import Digest, WireMessage
 
 
 class Completeness:
-    """Every tick has its truth and radio record; of each present robot observation, inbox and action.
+    """Every tick has its truth and radio record; of each running robot observation, inbox and action.
 
     One robot may lack an action: the one that was given up for it, which leaves with the next tick.
     """
@@ -38,8 +38,8 @@ class Completeness:
                 )
             else:
                 self._judge_time(now, key, value.time_ns)
-        for robot in now.present:
-            self._judge_robot(now, robot)
+        for presence in now.running():
+            self._judge_robot(now, presence.robot)
 
     def _judge_robot(self, now: Snapshot, robot: int) -> None:
         mine = (
@@ -48,7 +48,7 @@ class Completeness:
         )
         for key, value in mine:
             if value is None:
-                what = f"robot {robot} is present and has no message on {topics.wire(key)}"
+                what = f"robot {robot} runs and has no message on {topics.wire(key)}"
                 self._report(now, (robot,), what, now.exhibit(key, "no message"))
             else:
                 self._judge_time(now, key, value.time_ns)

@@ -1,4 +1,4 @@
-"""What was found: how often each invariant was asked, and each violation with the messages that show it."""
+"""What was found: how often each invariant was judged, and what breaks it, with evidence."""
 
 from collections import Counter
 from dataclasses import dataclass, field

@@ -1,9 +1,10 @@
-"""Reads a log once, tick by tick, and asks every invariant of every tick; memory does not grow with it."""
+"""Reads a log once, tick by tick, and asks every invariant of every tick; its memory is bounded."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 from onehop.checking.completeness import Completeness, DigestCheck
+from onehop.checking.fault_air import FaultyAir
 from onehop.checking.fault_bit import FaultBit
 from onehop.checking.findings import Findings, Violation
 from onehop.checking.invariants import (
@@ -72,6 +73,7 @@ def judge(log: LogFile, only: Iterable[str] = ()) -> Report:
             ((ONE_LEADER, RE_ELECTION), Leadership(findings, scenario)),
             ((RADIO_INTEGRITY,), RadioIntegrity(findings, scenario.radio, period_ns)),
             ((FAULT_BIT,), FaultBit(findings, scenario)),
+            ((FAULT_BIT,), FaultyAir(findings, scenario)),
             ((NO_COLLISION,), collisions),
             ((MOTION,), Motion(findings, scenario)),
         )

@@ -20,7 +20,7 @@ BOUND_PERIODS = 4
 """B: Next periods after which robots that hear each other have one leader."""
 
 GIVING_UP_PERIODS = 3
-"""Next periods more in which robots that are gone are given up: lost_after of 2, and the first asking."""
+"""Next periods more in which the dead are given up: lost_after of 2, and the first asking."""
 
 
 @dataclass(slots=True)

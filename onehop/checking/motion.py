@@ -9,13 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from onehop.checking.effects import Effect, Effects
 from onehop.checking.findings import Findings
 from onehop.checking.invariants import MOTION, NO_COLLISION
 from onehop.checking.snapshot import Snapshot
 from onehop.contracts import topics
 from onehop.contracts.arrays import FloatArray
 from onehop.contracts.geometry import Pose
-from onehop.contracts.messages import Action, Presence, Truth
+from onehop.contracts.messages import Presence, Truth
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import MapSection
 
@@ -30,6 +31,7 @@ class Motion:
         self._findings = findings
         self._period = scenario.clock.period_ns / 1e9
         self._body = scenario.robot
+        self._effects = Effects()
         self._poses: dict[int, Pose] = {}
         self._driven: dict[int, tuple[float, float]] = {}
 
@@ -39,23 +41,26 @@ class Motion:
             self._poses, self._driven = {}, {}
         if now.truth is None:
             return
+        effects = self._effects.take(now)
+        for robot in kidnapped(now.truth):
+            self._poses.pop(robot, None)
         for robot, presence in now.present.items():
             before = self._poses.get(robot)
             if before is not None:
                 self._findings.count(MOTION)
                 self._judge(now, presence, before, self._driven.get(robot, (0.0, 0.0)))
             self._poses[robot] = presence.pose
-            self._driven[robot] = self._drive(now.actions.get(robot), presence)
+            self._driven[robot] = self._drive(effects.get(robot), presence)
 
-    def _drive(self, action: Action | None, presence: Presence) -> tuple[float, float]:
+    def _drive(self, effect: Effect | None, presence: Presence) -> tuple[float, float]:
         """How far a robot can come in a period [m], and turn [rad]: as commanded, within its motors.
 
         Who leaves after it has said so still drives that period; then its body stands.
         """
-        if action is None or presence.held or action.incarnation != presence.incarnation:
+        if effect is None or presence.held or effect.incarnation != presence.incarnation:
             return 0.0, 0.0
-        v = min(abs(action.twist.v), self._body.max_speed)
-        w = min(abs(action.twist.w), self._body.max_turn_rate)
+        v = min(abs(effect.twist.v), self._body.max_speed)
+        w = min(abs(effect.twist.w), self._body.max_turn_rate)
         return v * self._period, w * self._period
 
     def _judge(
@@ -97,6 +102,8 @@ class Collisions:
         self._tick = now.tick
         self._findings.count(NO_COLLISION, len(now.present))
         self._judge_contacts(now, now.truth)
+        for robot in kidnapped(now.truth):
+            self._bodies.pop(robot, None)
         for robot, presence in now.present.items():  # who has left stays where it was
             self._bodies[robot] = presence.pose.x, presence.pose.y
         self._judge_bodies(now)
@@ -137,6 +144,11 @@ class Collisions:
         if summary is not None and is_whole and summary["collisions"] != self._contacts:
             what = f"the outcome counts {summary['collisions']} contacts, the log {self._contacts}"
             self._findings.report(NO_COLLISION, self._tick, (), what)
+
+
+def kidnapped(truth: Truth) -> list[int]:
+    """Robots whose bodies somebody puts elsewhere at this tick."""
+    return [robot for fault in truth.faults if fault.kind == "kidnap" for robot in fault.robots]
 
 
 def wall_segments(section: MapSection) -> FloatArray:

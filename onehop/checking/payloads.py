@@ -1,9 +1,10 @@
 """What robots of a team say to each other, as far as it can be judged: read anew, not by their decoder.
 
-A payload is one msgpack array, [schema, kind, fields...]. Robots may say other things, which are no
-messages of a team and are left alone.
+A payload is one msgpack array, [schema, kind, fields...], and its CRC-32 in four bytes. Robots may say
+other things, which are no messages of a team and are left alone, as is what was altered on its way.
 """
 
+import zlib
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -13,7 +14,7 @@ from onehop.checking.rosters import Roster
 from onehop.contracts.printable import ids_in_words
 from onehop.wire.codec import UNPACK_REFUSALS
 
-SCHEMA = 2
+SCHEMA = 3
 """Version of the team's messages that is read here."""
 
 HANDOVER = "lost follower"
@@ -35,8 +36,11 @@ class Order(NamedTuple):
 @lru_cache(maxsize=4096)
 def order_in(payload: bytes) -> Order | None:
     """The command or beacon in a payload; None for anything else."""
+    content, checksum = payload[:-4], payload[-4:]
+    if zlib.crc32(content).to_bytes(4, "little") != checksum:
+        return None
     try:
-        fields = msgpack.unpackb(payload)
+        fields = msgpack.unpackb(content)
     except UNPACK_REFUSALS:
         return None
     if not isinstance(fields, list) or fields[:1] != [SCHEMA]:

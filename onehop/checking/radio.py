@@ -4,13 +4,12 @@ Messages are counted as the radio counts them: the n-th that a robot hands over 
 ticks that the log lacks the count is found again from the first verdict that fits one message alone.
 """
 
-from collections import Counter
 from dataclasses import dataclass, field
 
 from onehop.checking.airtime import Airtimes
 from onehop.checking.findings import Exhibit, Findings
 from onehop.checking.invariants import RADIO_INTEGRITY
-from onehop.checking.snapshot import Snapshot
+from onehop.checking.snapshot import ARRIVES, Snapshot
 from onehop.contracts import topics
 from onehop.contracts.messages import (
     BROADCAST,
@@ -41,8 +40,8 @@ class _Sent:
 class _Source:
     """Messages of one robot that have no verdict yet, by their place since known_ns.
 
-    first: number of the message at place 0, None while it is not known. known_ns: what was offered before
-    is not known.
+    first: number of the message at place 0, None while it is not known. known_ns: what was offered
+    before is not known.
     """
 
     first: int | None
@@ -66,6 +65,39 @@ class _Source:
         return verdict.message - self.first
 
 
+@dataclass(frozen=True, slots=True)
+class _Awaited:
+    """A message that arrived. payload: as it was sent, None if that is not known."""
+
+    verdict: Verdict
+    payload: bytes | None
+
+    def is_of(self, reception: Reception) -> bool:
+        verdict = self.verdict
+        return (reception.source, reception.arrival_ns) == (verdict.source, verdict.arrival_ns)
+
+    def wrong_content(self, reception: Reception) -> str | None:
+        """What a reception says otherwise than the verdict on its message."""
+        verdict = self.verdict
+        is_altered = self.payload is not None and reception.payload != self.payload
+        if is_altered and verdict.status is not DeliveryStatus.CORRUPTED:
+            return "is altered"
+        if verdict.status is DeliveryStatus.CORRUPTED and reception.payload == self.payload:
+            return "is said to be altered, and is not"
+        account = Reception(
+            source=verdict.source,
+            payload=reception.payload,
+            service_start_ns=verdict.service_start_ns,
+            arrival_ns=verdict.arrival_ns,
+            hops=len(verdict.path) - 1,
+            attempts=sum(verdict.attempts),
+            snr_db=verdict.snr_db,
+            bit_error_rate=verdict.bit_error_rate,
+            msdu_bytes=verdict.msdu_bytes,
+        )
+        return None if account == reception else "is received otherwise than its verdict says"
+
+
 class RadioIntegrity:
     """Follows every message from the truth that offers it to the inbox that gets it."""
 
@@ -75,6 +107,7 @@ class RadioIntegrity:
         self._period_ns = period_ns
         self._known_ns: int | None = None
         self._sources: dict[int, _Source] = {}
+        self._awaited: dict[int, list[_Awaited]] = {}
 
     def take(self, now: Snapshot) -> None:
         """One more tick."""
@@ -83,13 +116,15 @@ class RadioIntegrity:
         if now.truth is None or now.record is None:
             self._lose_count(now.tick * self._period_ns)
             return
+        for departure in now.truth.departures:
+            self._awaited.pop(departure.robot, None)
         self._take_requests(now.truth)
         self._judge_verdicts(now, now.record)
 
     def _lose_count(self, known_ns: int) -> None:
         """Of messages that were offered before known_ns nothing is known any more."""
         self._known_ns = known_ns
-        self._sources = {}
+        self._sources, self._awaited = {}, {}
 
     def _source(self, robot: int) -> _Source:
         source = self._sources.get(robot)
@@ -109,14 +144,13 @@ class RadioIntegrity:
                 source.count += 1
 
     def _judge_verdicts(self, now: Snapshot, record: RadioRecord) -> None:
-        awaited: Counter[tuple[int, Reception]] = Counter()
         settled: dict[tuple[int, int], set[int]] = {}
         for verdict in record.verdicts:
             self._findings.count(RADIO_INTEGRITY)
             source = self._source(verdict.source)
             place = source.place(verdict)
             if place is None:
-                self._await_unknown(verdict, now, awaited)
+                self._await(verdict, None)
                 continue
             sent = source.unsettled.get(place)
             receivers = settled.setdefault((verdict.source, place), set())
@@ -128,42 +162,21 @@ class RadioIntegrity:
             else:
                 receivers.add(verdict.receiver)
                 self._judge(now, verdict, sent)
-                if verdict.status is DeliveryStatus.DELIVERED:
-                    self._await(verdict, sent.sent.payload, awaited)
+                if verdict.status in ARRIVES:
+                    self._await(verdict, sent.sent.payload)
         for robot, place in settled:
             self._sources[robot].unsettled.pop(place, None)
-        self._judge_receptions(now, awaited)
+        self._judge_receptions(now)
 
-    @staticmethod
-    def _await_unknown(verdict: Verdict, now: Snapshot, awaited: Counter[tuple[int, Reception]]) -> None:
-        """A message from before a gap: its payload is not known, so whatever it is is taken."""
-        if verdict.status is not DeliveryStatus.DELIVERED:
-            return
-        inbox = now.inboxes.get(verdict.receiver)
-        for reception in inbox.receptions if inbox is not None else ():
-            if _is_of(reception, verdict):
-                awaited[verdict.receiver, reception] += 1
-                return
-
-    @staticmethod
-    def _await(verdict: Verdict, payload: bytes, awaited: Counter[tuple[int, Reception]]) -> None:
-        reception = Reception(
-            source=verdict.source,
-            payload=payload,
-            service_start_ns=verdict.service_start_ns,
-            arrival_ns=verdict.arrival_ns,
-            hops=len(verdict.path) - 1,
-            attempts=sum(verdict.attempts),
-            snr_db=verdict.snr_db,
-            bit_error_rate=verdict.bit_error_rate,
-            msdu_bytes=verdict.msdu_bytes,
-        )
-        awaited[verdict.receiver, reception] += 1
+    def _await(self, verdict: Verdict, payload: bytes | None) -> None:
+        """A message that arrives comes into an inbox. payload: None if it is not known."""
+        if verdict.status in ARRIVES:
+            self._awaited.setdefault(verdict.receiver, []).append(_Awaited(verdict, payload))
 
     def _judge(self, now: Snapshot, verdict: Verdict, sent: _Sent) -> None:
         """One verdict against the message that it is about."""
         wrong = self._wrong_account(verdict, sent)
-        if wrong is None and verdict.status is DeliveryStatus.DELIVERED:
+        if wrong is None and verdict.status in ARRIVES:
             wrong = self._wrong_delivery(now, verdict)
         if wrong is not None:
             self._report(now, verdict, wrong, _sending(sent, verdict))
@@ -199,26 +212,29 @@ class RadioIntegrity:
         end_ns = now.tick * self._period_ns
         if not end_ns - self._period_ns <= verdict.arrival_ns <= end_ns:
             return f"arrived at {verdict.arrival_ns} ns, which is not in this tick"
+        if verdict.status is DeliveryStatus.CORRUPTED and not _is_corrupted(now, verdict.receiver):
+            return "is altered, and no corruption is in force"
         return None
 
-    def _judge_receptions(self, now: Snapshot, awaited: Counter[tuple[int, Reception]]) -> None:
-        """Inboxes hold what was delivered: each once, and nothing else."""
+    def _judge_receptions(self, now: Snapshot) -> None:
+        """Inboxes hold what arrived: each once, as it was sent, and nothing else."""
         for robot, inbox in now.inboxes.items():
+            awaited = self._awaited.get(robot, [])
             for reception in inbox.receptions:
-                key = robot, reception
-                if awaited[key] > 0:
-                    awaited[key] -= 1
+                mine = next((one for one in awaited if one.is_of(reception)), None)
+                if mine is None:
+                    what = f"robot {robot} got a message of robot {reception.source} that did not arrive"
+                    self._report_reception(now, robot, reception, what)
                     continue
-                altered = next((k for k in awaited if awaited[k] and _is_altered(k, key)), None)
-                what = f"robot {robot} got a message of robot {reception.source} that was not delivered"
-                if altered is not None:
-                    awaited[altered] -= 1
-                    what = f"a message of robot {reception.source} is altered when robot {robot} gets it"
-                self._report_reception(now, robot, reception, what)
-        for (robot, reception), count in awaited.items():
-            if count > 0 and robot in now.inboxes:
-                what = f"a message that was delivered to robot {robot} is not in its inbox"
-                self._report_reception(now, robot, reception, what)
+                awaited.remove(mine)
+                wrong = mine.wrong_content(reception)
+                if wrong is not None:
+                    what = f"a message of robot {reception.source} to robot {robot} {wrong}"
+                    self._report_reception(now, robot, reception, what)
+            for one in awaited:
+                self._report(now, one.verdict, "arrived and is not in the inbox")
+        # who is stopped reads it later, and who is gone never
+        self._awaited = {i: self._awaited[i] for i in now.stopped if i in self._awaited}
 
     def _report_reception(self, now: Snapshot, robot: int, reception: Reception, what: str) -> None:
         says = f"from robot {reception.source}, arrived at {reception.arrival_ns} ns"
@@ -241,11 +257,6 @@ def _sending(sent: _Sent, verdict: Verdict) -> Exhibit:
     return Exhibit(sent.tick, topics.wire(topics.TRUTH), says)
 
 
-def _is_of(reception: Reception, verdict: Verdict) -> bool:
-    return (reception.source, reception.arrival_ns) == (verdict.source, verdict.arrival_ns)
-
-
-def _is_altered(one: tuple[int, Reception], other: tuple[int, Reception]) -> bool:
-    """Whether two receptions are of the same message at the same robot."""
-    a, b = one[1], other[1]
-    return one[0] == other[0] and (a.source, a.arrival_ns) == (b.source, b.arrival_ns)
+def _is_corrupted(now: Snapshot, robot: int) -> bool:
+    """Whether a fault may alter what a robot receives in this tick."""
+    return now.truth is not None and any(robot in one.robots for one in now.truth.corruptions)

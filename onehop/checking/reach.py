@@ -1,12 +1,12 @@
 """Who could hear whom, from poses, cuts, jams and what became of messages: path loss worked out anew.
 
-Two present robots are **linked** while each receives the other, on the mean and with its jams, at least
-MARGIN_DB above the receive threshold, no cut lies between them, and no message between them is lost or
-late. They are **apart** when no fading could carry a frame from one to the other.
+Two running robots, neither of them slow, are **linked** while each receives the other, on the mean and
+with its jams, at least MARGIN_DB above the receive threshold, no cut lies between them, and no message
+between them is lost or late. They are **apart** when no fading could carry a frame from one to the other.
 
-Mean SNR at distance d (thesis 3.7.1): Pt + 2G - L - FSPL(d0) - 10 n log10(d / d0) - noise, and a jam
-raises the noise. Walls that weaken signals (wall_loss_db) are not looked at: what crosses one may be lost,
-and a message that is lost ends a link here.
+Mean SNR at distance d (thesis 3.7.1): Pt + 2G - L - FSPL(d0) - 10 n log10(d / d0) - noise, and a jam raises
+the noise. Walls that weaken signals (wall_loss_db) are not looked at: what crosses one may be
+lost, and a message that is lost ends a link here.
 """
 
 import math
@@ -92,7 +92,7 @@ class Links:
         place = np.full((count, 2), np.nan)
         incarnation = np.full(count, -1)
         rise = np.zeros(count)
-        for one in truth.present:
+        for one in now.running():
             row = self.row.get(one.robot)
             if row is not None:
                 place[row] = one.pose.x, one.pose.y
@@ -106,7 +106,8 @@ class Links:
         for cut in truth.cuts:
             side_a, side_b = self._rows(cut.side_a), self._rows(cut.side_b)
             snr[np.ix_(side_a, side_b)] = -np.inf
-            snr[np.ix_(side_b, side_a)] = -np.inf
+            if not cut.one_way:
+                snr[np.ix_(side_b, side_a)] = -np.inf
         weakest = np.minimum(snr, snr.T)
         linked = weakest >= self._budget.threshold_db + MARGIN_DB
         self.apart = np.maximum(snr, snr.T) < self._budget.threshold_db - FARTHEST_FADE_DB
@@ -114,6 +115,8 @@ class Links:
         self._incarnation = incarnation
         if not now.follows:
             changed[:] = True
+        for slow in truth.slow:
+            changed[self._rows((slow.robot,))] = True
         later = now.tick + 1
         self.since[~linked] = later
         fresh = changed[:, None] | changed[None, :]

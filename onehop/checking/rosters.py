@@ -1,4 +1,4 @@
-"""Leader, shape and order of rosters, from their definitions (thesis 3.3, Algorithm 1; docs/modes.md)."""
+"""Leader, shape and order of rosters, by definition (thesis 3.3, Algorithm 1; docs/modes.md)."""
 
 from statistics import median_low
 from typing import NamedTuple

@@ -8,18 +8,30 @@ from dataclasses import dataclass, field
 from onehop.checking.findings import Exhibit
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import Action, Inbox, Observation, Presence, RadioRecord, Truth
+from onehop.contracts.messages import (
+    Action,
+    DeliveryStatus,
+    Inbox,
+    Observation,
+    Presence,
+    RadioRecord,
+    Truth,
+)
 from onehop.contracts.printable import ids_in_words
 from onehop.wire.log_reader import LoggedTick
 from onehop.wire.logged import TickMessage, decoded
 from onehop.wire.selection import Selected
+
+ARRIVES = frozenset((DeliveryStatus.DELIVERED, DeliveryStatus.CORRUPTED))
+"""Statuses of what comes to its receiver, as it was sent or not; all others are losses."""
 
 
 @dataclass(slots=True)
 class Snapshot:
     """A tick. follows: the tick before it was in the log, too.
 
-    present: robots that take part, by id. flaws: what is wrong with its messages, each with its channel.
+    present: robots that take part, by id. stopped: those whose processes are stopped. flaws: what is wrong
+    with its messages, each with its channel.
     """
 
     tick: int
@@ -30,6 +42,7 @@ class Snapshot:
     observations: dict[int, Observation] = field(default_factory=dict)
     actions: dict[int, Action] = field(default_factory=dict)
     present: dict[int, Presence] = field(default_factory=dict)
+    stopped: tuple[int, ...] = ()
     flaws: list[tuple[str, str]] = field(default_factory=list)
 
     def take(self, key: str, value: TickMessage) -> None:
@@ -46,6 +59,11 @@ class Snapshot:
         else:
             self.truth = value
             self.present = {one.robot: one for one in value.present}
+            self.stopped = value.stopped
+
+    def running(self) -> list[Presence]:
+        """Robots that have an observation, an inbox and an action at this tick."""
+        return [one for robot, one in self.present.items() if robot not in self.stopped]
 
     def exhibit(self, key: str, says: str) -> Exhibit:
         """A message of this tick as evidence."""

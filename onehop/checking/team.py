@@ -42,6 +42,8 @@ class Team:
     def take(self, now: Snapshot) -> None:
         """One more tick."""
         before, self._memory = self._memory, {}
+        if now.follows:
+            self._memory = {robot: before[robot] for robot in now.stopped if robot in before}
         for robot, action in now.actions.items():
             known = before.get(robot) if now.follows else None
             if known is not None and known.incarnation != action.incarnation:

@@ -4,11 +4,12 @@ A log shows of a message's origin: that its robot was there, as the same process
 says of it is the same. What the bus itself refuses is not in the log (docs/limits.md).
 """
 
+from onehop.checking.effects import Effect, Effects
 from onehop.checking.findings import Findings
 from onehop.checking.invariants import OWN_VOICE, SILENCE
 from onehop.checking.snapshot import Snapshot
 from onehop.contracts import topics
-from onehop.contracts.messages import Action, Presence, TransmitRequest, Truth
+from onehop.contracts.messages import Presence, TransmitRequest, Truth
 
 
 class Voices:
@@ -17,15 +18,16 @@ class Voices:
     def __init__(self, findings: Findings, robots: tuple[int, ...]) -> None:
         self._findings = findings
         self._robots = robots
-        self._before: dict[int, Action] = {}
+        self._effects = Effects()
+        self._before: dict[int, Effect] = {}
 
     def take(self, now: Snapshot) -> None:
         """One more tick."""
-        before, self._before = self._before, now.actions
+        before, self._before = self._before, self._effects.take(now)
         if now.truth is None:
             return
-        for robot, presence in now.present.items():
-            self._judge_own(now, robot, presence)
+        for presence in now.running():
+            self._judge_own(now, presence.robot, presence)
         self._judge_absent(now)
         if now.follows or now.tick == 0:
             self._judge_requests(now, now.truth, before)
@@ -58,7 +60,8 @@ class Voices:
             )  # fmt: skip
 
     def _judge_absent(self, now: Snapshot) -> None:
-        absent = [robot for robot in self._robots if robot not in now.present]
+        running = {presence.robot for presence in now.running()}
+        absent = [robot for robot in self._robots if robot not in running]
         self._findings.count(SILENCE, len(absent))
         for robot in absent:
             for key, messages in (
@@ -68,12 +71,13 @@ class Voices:
             ):
                 if robot in messages:
                     does = "speaks" if messages is now.actions else "is told something"
-                    what = f"robot {robot} is not in the mission and {does}"
+                    state = "stopped" if robot in now.stopped else "not in the mission"
+                    what = f"robot {robot} is {state} and {does}"
                     self._findings.report(
                         SILENCE, now.tick, (robot,), what, now.exhibit(key, "a message")
                     )
 
-    def _judge_requests(self, now: Snapshot, truth: Truth, before: dict[int, Action]) -> None:
+    def _judge_requests(self, now: Snapshot, truth: Truth, before: dict[int, Effect]) -> None:
         """What the world hands to the radio is what the robots handed to it in the last tick."""
         requests = {request.robot: request for request in truth.transmit_requests}
         for robot, request in requests.items():
@@ -82,13 +86,13 @@ class Voices:
                 said = now.exhibit(topics.TRUTH, f"{len(request.outbox)} messages of robot {robot}")
                 self._findings.report(SILENCE, now.tick, (robot,), what, said)
         for robot, presence in now.present.items():
-            action, handed = before.get(robot), requests.get(robot)
-            if action is not None and action.incarnation != presence.incarnation:
-                action = None
-            if not _same(action, handed):
+            done, handed = before.get(robot), requests.get(robot)
+            if done is not None and done.incarnation != presence.incarnation:
+                done = None
+            if not _same(done, handed):
                 what = f"what the world hands to the radio for robot {robot} is not what it said"
                 told = "nothing" if handed is None else _in_words(handed)
-                spoken = "nothing" if action is None else _in_words(action)
+                spoken = "nothing" if done is None else _in_words(done)
                 self._findings.report(
                     OWN_VOICE, now.tick, (robot,), what,
                     now.exhibit(topics.TRUTH, told),
@@ -96,15 +100,15 @@ class Voices:
                 )  # fmt: skip
 
 
-def _same(action: Action | None, request: TransmitRequest | None) -> bool:
-    if action is None or request is None:
-        return request is None and action is None
+def _same(done: Effect | None, request: TransmitRequest | None) -> bool:
+    if done is None or request is None:
+        return request is None and done is None
     return (
-        action.outbox == request.outbox
-        and action.speed == request.speed
-        and action.remaining_distance == request.remaining_distance
+        done.outbox == request.outbox
+        and done.speed == request.speed
+        and done.remaining_distance == request.remaining_distance
     )
 
 
-def _in_words(said: Action | TransmitRequest) -> str:
+def _in_words(said: Effect | TransmitRequest) -> str:
     return f"{len(said.outbox)} messages, speed {said.speed:.3f}, {said.remaining_distance:.3f} m to go"
