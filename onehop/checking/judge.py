@@ -1,6 +1,6 @@
 """Reads a log once, tick by tick, and asks every invariant of every tick; its memory is bounded."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from onehop.checking.completeness import Completeness, DigestCheck
@@ -27,10 +27,11 @@ from onehop.checking.invariants import (
 from onehop.checking.leaders import Leadership
 from onehop.checking.motion import Collisions, Motion
 from onehop.checking.radio import RadioIntegrity
-from onehop.checking.snapshot import snapshot
+from onehop.checking.snapshot import Snapshot, snapshot
 from onehop.checking.team import Team
 from onehop.checking.voice import Voices
 from onehop.contracts.errors import LogError
+from onehop.wire.journal import WireMessage
 from onehop.wire.log_reader import LogFile
 
 
@@ -79,21 +80,47 @@ def judge(log: LogFile, only: Iterable[str] = ()) -> Report:
         )
         if wanted.intersection(names)
     ]
-    last, read = -1, 0
-    try:
-        for logged in log.ticks():
-            now = snapshot(logged, follows=read > 0 and logged.tick == last + 1)
-            last, read = logged.tick, read + 1
-            digest.take(logged.tick, logged.messages)
-            for check in checks:
-                check.take(now)
-    except LogError as error:
-        completeness.on_end_of_reading(error.problem)
+    reading = _Reading(log)
+    for now, messages in reading.ticks():
+        digest.take(now.tick, messages)
+        for check in checks:
+            check.take(now)
+    if reading.error is not None:
+        completeness.on_end_of_reading(reading.error)
     else:
         digest.finish(summary)
         completeness.finish(summary)
-        collisions.finish(summary, is_whole=summary is not None and summary["ticks"] == read)
-    return _report(findings, scenario.team.profile, read)
+        is_whole = summary is not None and summary["ticks"] == reading.count
+        collisions.finish(summary, is_whole)
+    return _report(findings, scenario.team.profile, reading.count)
+
+
+class _Reading:
+    """Reads a log as far as it goes. count: ticks that were read. error: why it ended early, if it did.
+
+    The last tick before a tear, or before what cannot be read, is left out if it is not whole.
+    """
+
+    def __init__(self, log: LogFile) -> None:
+        self._log = log
+        self.count = 0
+        self.error: str | None = None
+
+    def ticks(self) -> Iterator[tuple[Snapshot, list[WireMessage]]]:
+        """Every tick, decoded and as it was written."""
+        last: tuple[Snapshot, list[WireMessage]] | None = None
+        try:
+            for logged in self._log.ticks():
+                if last is not None:
+                    self.count += 1
+                    yield last
+                follows = last is not None and logged.tick == last[0].tick + 1
+                last = snapshot(logged, follows), logged.messages
+        except LogError as error:
+            self.error = error.problem
+        if last is not None and (last[0].is_whole() or not (self._log.torn or self.error)):
+            self.count += 1
+            yield last
 
 
 def _report(findings: Findings, profile: str, ticks: int) -> Report:

@@ -2,10 +2,10 @@
 
 Two running robots, neither of them slow, are **linked** while each receives the other, on the mean and
 with its jams, at least MARGIN_DB above the receive threshold, no cut lies between them, and no message
-between them is lost or late. They are **apart** when no fading could carry a frame from one to the other.
+between them is lost or late. They are **apart** when no fading could carry a frame between them.
 
-Mean SNR at distance d (thesis 3.7.1): Pt + 2G - L - FSPL(d0) - 10 n log10(d / d0) - noise, and a jam raises
-the noise. Walls that weaken signals (wall_loss_db) are not looked at: what crosses one may be
+Mean SNR at distance d (thesis 3.7.1): Pt + 2G - L - FSPL(d0) - 10 n log10(d / d0) - noise, and a jam
+raises the noise. Walls that weaken signals (wall_loss_db) are not looked at: what crosses one may be
 lost, and a message that is lost ends a link here.
 """
 

@@ -30,8 +30,8 @@ ARRIVES = frozenset((DeliveryStatus.DELIVERED, DeliveryStatus.CORRUPTED))
 class Snapshot:
     """A tick. follows: the tick before it was in the log, too.
 
-    present: robots that take part, by id. stopped: those whose processes are stopped. flaws: what is wrong
-    with its messages, each with its channel.
+    present: robots that take part, by id. stopped: those whose processes are stopped. flaws: what is
+    wrong with its messages, each with its channel.
     """
 
     tick: int
@@ -80,6 +80,12 @@ class Snapshot:
             f"{status.mode.value}, epoch {status.epoch}, leader {status.leader} of "
             f"{ids_in_words(status.members)}, {status.shape.value}",
         )
+
+    def is_whole(self) -> bool:
+        """Whether all is there that world, radio and robots owe each other in a tick."""
+        owed = {presence.robot for presence in self.running()}
+        said = self.observations.keys() & self.inboxes.keys() & self.actions.keys()
+        return self.truth is not None and self.record is not None and owed <= said
 
 
 def snapshot(logged: LoggedTick, follows: bool) -> Snapshot:

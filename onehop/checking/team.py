@@ -196,7 +196,7 @@ def _orders_given(action: Action) -> list[Order]:
 
 
 def _same_team(a: Status, b: Status) -> bool:
-    return a.members == b.members and a.leader == b.leader
+    return a.members == b.members
 
 
 def _as_exhibits(now: Snapshot, robot: int, orders: list[tuple[int, Order]]) -> list[Exhibit]:
