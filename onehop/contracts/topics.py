@@ -42,7 +42,7 @@ KILL = "kill"
 the same of a process that is stopped."""
 
 STOP = "stop"
-"""World to operator: stop the process of this robot (SIGSTOP)."""
+"""World to robot: you will be stopped; then world to operator: stop this robot's process (SIGSTOP)."""
 
 CONTINUE = "continue"
 """World to operator: let the process of this robot go on (SIGCONT)."""
@@ -51,7 +51,7 @@ WAKE = "wake"
 """World to robot: say that you are awake."""
 
 AWAKE = "awake"
-"""Robot to world: the answer to that."""
+"""Robot to world: the answer to either."""
 
 CARRIED = "carried"
 """Radio to world: the inboxes of tick k of every present robot, and the record of the tick."""

@@ -123,8 +123,8 @@ class World:
         """Let one period pass. A present robot without an action stands still.
 
         by_hand: faults that begin with the next tick, beside those of the script. Actions of robots that
-        are not present, or of an earlier incarnation, are ignored. Raises ValueError for a twist that is
-        not a number: a broken robot, not a state of the world.
+        are not present or are stopped, or of an earlier incarnation, are ignored. Raises ValueError for
+        a twist that is not a number: a broken robot, not a state of the world.
         """
         faults = self._faults
         self._take_over(self._late_actions.effective(actions, self.tick, faults.delays, faults.stopped))
@@ -211,6 +211,7 @@ class World:
             if (
                 action is None
                 or not self._present[robot]
+                or robot in self._faults.stopped
                 or action.incarnation != self._incarnation[robot]
             ):
                 continue
