@@ -10,7 +10,6 @@ from msgspec.structs import replace
 
 from onehop.analysis.columns import Column
 from onehop.analysis.tables import Table
-from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.leadership import LeadershipHistory
 from onehop.contracts.messages import LeadershipTerm
 
@@ -148,14 +147,3 @@ def _each(time_s: Column, names: Column, gap_s: float) -> list[Span]:
 
 def _ids(robots: tuple[int, ...]) -> str:
     return " ".join(map(str, robots))
-
-
-def describe_fault(fault: FaultSection) -> str:
-    """A scripted fault in words, e.g. "kill 3", "jam within 8 m of (40, 40), 20 s"."""
-    who = ", ".join(map(str, fault.robots))
-    what = {
-        "jam": f"jam within {fault.radius:g} m of ({fault.x:g}, {fault.y:g})",
-        "cut": f"cut {who} from {', '.join(map(str, fault.others)) or 'the rest'}",
-        "heal": f"heal {who or 'everything'}",
-    }.get(fault.kind, f"{fault.kind} {who}")
-    return what + (f", {fault.duration_s:g} s" if fault.duration_s else "")

@@ -16,7 +16,8 @@ from onehop.analysis.ground import draw_ground
 from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, INK, robot_colours
 from onehop.analysis.tables import Table
-from onehop.analysis.timeline import LastSeen, departures, describe_fault, leadership
+from onehop.analysis.timeline import LastSeen, departures, leadership
+from onehop.contracts.fault_section import in_words
 from onehop.contracts.messages import LeadershipTerm
 from onehop.contracts.printable import printable
 from onehop.wire.log_reader import LogFile
@@ -236,7 +237,7 @@ def _legend(log: Log, gone: list[LastSeen], colours: dict[int, str]) -> list[Lin
             marker="x",
             markersize=5,
             color=BAD,
-            label=fill(f"{f.at_s:g} s: {describe_fault(f)}", 30),
+            label=fill(f"{f.at_s:g} s: {in_words(f)}", 30),
         )
         for f in log.scenario.faults
     ]
