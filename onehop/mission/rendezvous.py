@@ -63,14 +63,10 @@ def the_one_that_runs() -> Path:
     """The folder of the only mission of this user. Raises InputError if there is none, or several."""
     folders = running()
     if not folders:
-        raise InputError(
-            "onehop fault", "no mission runs", "start one with onehop run, or give --mission"
-        )
+        raise InputError("fault", "no mission runs", "start one with onehop run, or give --mission")
     if len(folders) > 1:
         which = ", ".join(map(str, folders))
-        raise InputError(
-            "onehop fault", f"{len(folders)} missions run", f"which one? --mission of {which}"
-        )
+        raise InputError("fault", f"{len(folders)} missions run", f"which one? --mission of {which}")
     return folders[0]
 
 
