@@ -4,7 +4,7 @@ import time
 from collections.abc import Mapping
 
 from onehop.contracts import topics
-from onehop.contracts.fault_section import in_words
+from onehop.contracts.fault_section import fault_in_words
 from onehop.contracts.messages import Action, Progress, RobotProgress, Truth
 from onehop.node.bus import Bus
 from onehop.wire.codec import encode
@@ -27,7 +27,7 @@ class ProgressReports:
         actions: by robot, ids ascending.
         """
         for fault in truth.faults:
-            self._tell(f"{truth.time_ns / 1e9:g} s: {in_words(fault)}".encode())
+            self._tell(f"{truth.time_ns / 1e9:g} s: {fault_in_words(fault)}".encode())
         now = time.monotonic()
         if now < self._next_s:
             return

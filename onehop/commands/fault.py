@@ -6,7 +6,7 @@ from typing import Any
 
 from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
-from onehop.contracts.fault_section import KINDS, OWN_KEYS, FaultSection, in_toml, in_words
+from onehop.contracts.fault_section import KINDS, OWN_KEYS, FaultSection, fault_in_words, in_toml
 from onehop.contracts.ranges import out_of_range
 from onehop.mission.injection import inject
 from onehop.mission.rendezvous import the_one_that_runs, way_into
@@ -50,7 +50,7 @@ def fault(kind: str, robots: str, others: str, mission: Path | None, given: dict
             }
         )
     else:
-        print(f"{in_words(begun)}: took effect at tick {answer.tick}, {begun.at_s:g} s")
+        print(f"{fault_in_words(begun)}: took effect at tick {answer.tick}, {begun.at_s:g} s")
         print(f"the same in a scenario: faults = [{in_toml(begun)}]")
     return 0
 

@@ -112,7 +112,7 @@ class FaultSection:
         return replace(self, at_s=at_s, robots=robots, others=others, on="", nth=1, after_s=0.0)
 
 
-def in_words(fault: FaultSection) -> str:
+def fault_in_words(fault: FaultSection) -> str:
     """A fault for people, e.g. "kill 3", "jam within 8 m of (40, 40), 20 s"."""
     who = ", ".join(map(str, fault.robots))
     rest = ", ".join(map(str, fault.others)) or "the rest"
