@@ -5,7 +5,7 @@ robot's process kills itself; to stop it, to let it go on, to kill it while it i
 again is the operator's part, and where there is none (containers) a stopped robot is only not asked.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from functools import partial
 
@@ -18,7 +18,7 @@ from world_server.roll_call import RollCall
 RESTART_S = 20.0
 """How long the end of a process may take, and the start of the next one [s]."""
 
-WAKE_S = 0.2
+ASK_S = 0.2
 """How often a process that has been stopped is asked whether it is awake [s]: while it was stopped its
 session may have been given up, and until it has come back what it is asked is lost."""
 
@@ -45,12 +45,16 @@ class ProcessFaults:
         self._roll = roll
         self._silence_s = silence_s
         self._kill = {i: bus.publisher(topics.to(topics.robot_name(i), topics.KILL)) for i in robots}
-        self._wake = {i: bus.publisher(topics.to(topics.robot_name(i), topics.WAKE)) for i in robots}
+        self._ask = {
+            (what, i): bus.publisher(topics.to(topics.robot_name(i), what))
+            for what in (topics.STOP, topics.WAKE)
+            for i in robots
+        }
         self._order = {
             what: bus.publisher(topics.to(topics.OPERATOR, what))
             for what in (topics.RESTART, topics.STOP, topics.CONTINUE, topics.KILL)
         }
-        self._stopped: dict[int, int] = {}
+        self._stopped: set[int] = set()
         self._awake: set[int] = set()
         for i in robots:
             mail.read(topics.robot_name(i), topics.AWAKE, partial(self._on_awake, i))
@@ -67,22 +71,24 @@ class ProcessFaults:
             if fault.kind == "restart":
                 for robot in fault.robots:
                     self._restart(robot, incarnations[robot])
-        self._stop_and_wake(truth.stopped, incarnations)
+        self._stop_and_wake(truth.stopped)
 
-    def _stop_and_wake(self, stopped: tuple[int, ...], incarnations: Mapping[int, int]) -> None:
+    def _stop_and_wake(self, stopped: tuple[int, ...]) -> None:
         for robot in stopped:
             if robot not in self._stopped:
-                self._stopped[robot] = incarnations[robot]
+                self._stopped.add(robot)
+                self._await_answer(topics.STOP, robot)
                 self._tell(topics.STOP, robot)
-        for robot in sorted(self._stopped):
-            if robot not in stopped:
-                del self._stopped[robot]
-                self._let_go_on(robot)
+        for robot in sorted(self._stopped.difference(stopped)):
+            self._stopped.discard(robot)
+            self._tell(topics.CONTINUE, robot)
+            self._await_answer(topics.WAKE, robot)
 
     def _end(self, robot: int) -> None:
         """End a process, and one that is stopped too."""
         self._kill[robot](b"")
-        if self._stopped.pop(robot, None) is not None:
+        if robot in self._stopped:
+            self._stopped.discard(robot)
             self._tell(topics.KILL, robot)
 
     def _restart(self, robot: int, incarnation: int) -> None:
@@ -95,15 +101,18 @@ class ProcessFaults:
         with self._open_briefings():
             self._roll.gather([name], RESTART_S)
 
-    def _let_go_on(self, robot: int) -> None:
-        """Let a stopped process go on, and wait until it hears; if it is dead it will be missed."""
+    def _await_answer(self, what: str, robot: int) -> None:
+        """Say something to a robot until it answers; if its process is dead it will be missed."""
         name = topics.robot_name(robot)
-        self._tell(topics.CONTINUE, robot)
         self._awake.discard(robot)
-        for _ in range(round(self._silence_s / WAKE_S)):
-            self._wake[robot](b"")
-            if self._mail.wait(lambda: robot in self._awake or self._roll.has_died(name), WAKE_S):
+        for _ in range(round(self._silence_s / ASK_S)):
+            self._ask[what, robot](b"")
+            if self._mail.wait(lambda: self._hears(robot, name) or self._roll.has_died(name), ASK_S):
                 return
+
+    def _hears(self, robot: int, name: str) -> bool:
+        """Whether a process is awake, and its session is there (again)."""
+        return robot in self._awake and name in self._roll.present
 
     def _tell(self, what: str, robot: int) -> None:
         self._order[what](str(robot).encode())

@@ -106,10 +106,28 @@ class FaultSection:
         values = ((one.name, getattr(self, one.name), one.default) for one in fields(self)[1:])
         return {name: value for name, value, default in values if value != default}
 
-    def begun(self, at_s: float, robots: tuple[int, ...]) -> "FaultSection":
+    def begun(self, at_s: float) -> "FaultSection":
         """The fault as the truth tells it: when it began, and whom it concerns, whatever led to it."""
-        others = tuple(sorted(set(self.others)))
+        robots, others = (tuple(sorted(set(ids))) for ids in (self.robots, self.others))
         return replace(self, at_s=at_s, robots=robots, others=others, on="", nth=1, after_s=0.0)
+
+
+def fault_in_words(fault: FaultSection) -> str:
+    """A fault for people, e.g. "kill 3", "jam within 8 m of (40, 40), 20 s"."""
+    who = ", ".join(map(str, fault.robots))
+    rest = ", ".join(map(str, fault.others)) or "the rest"
+    what = {
+        "kidnap": f"kidnap {who} to ({fault.x:g}, {fault.y:g})",
+        "slow": f"slow {who} by {fault.delay_ticks} ticks",
+        "cut": f"cut {who} {_DIRECTIONS[fault.direction]} {rest}",
+        "corrupt": f"corrupt {100.0 * fault.probability:g} % of what {who or 'everyone'} receives",
+        "jam": f"jam within {fault.radius:g} m of ({fault.x:g}, {fault.y:g})",
+        "heal": f"heal {who or 'everything'}",
+    }.get(fault.kind, f"{fault.kind} {who}")
+    return what + (f", {fault.duration_s:g} s" if fault.duration_s else "")
+
+
+_DIRECTIONS = {"both": "from", "from": "one way to", "to": "one way from"}
 
 
 def in_toml(fault: FaultSection) -> str:

@@ -343,6 +343,25 @@ class Death(Wire, frozen=True):
     account: str
 
 
+class FaultOrder(Wire, frozen=True):
+    """Injector to world (key fault): carry out a fault with the next tick.
+
+    number: of this order, by which its answer is known; an order that is repeated counts once.
+    """
+
+    number: int
+    fault: FaultSection
+
+
+class FaultAnswer(Wire, frozen=True):
+    """World to injector (key answer). tick: whose truth shows the fault; refusal: why none does."""
+
+    number: int
+    tick: int
+    refusal: str
+    fault: FaultSection
+
+
 class RobotProgress(Value, frozen=True):
     """One line of the progress display; speed [m/s]."""
 

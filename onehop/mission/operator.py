@@ -135,6 +135,8 @@ class OperatorSession:
             progress = decode(Progress, data)
             self._tick = progress.tick
             self._show(progress)
+        elif what == topics.TOLD:
+            self._tell(data.decode())
         elif what == topics.RESTART:
             self._group.start_robot(int(data))
         elif what in SIGNALS:

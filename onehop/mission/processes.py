@@ -74,7 +74,8 @@ class ProcessGroup:
         self._endpoint = endpoint
         self._mission = mission
         self._words = words
-        names = [topics.RADIO, topics.RECORDER, topics.OPERATOR, *map(topics.robot_name, robots)]
+        others = (topics.RADIO, topics.RECORDER, topics.OPERATOR, topics.INJECTOR)
+        names = [*others, *map(topics.robot_name, robots)]
         require_descriptors(len(names))
         self._passwords = make_credentials(names)
         self._lifeline, self._keep_open = os.pipe()
@@ -93,9 +94,9 @@ class ProcessGroup:
         if not self.said_something:
             shutil.rmtree(self._words, ignore_errors=True)
 
-    @property
-    def operator_password(self) -> str:
-        return self._passwords[topics.OPERATOR]
+    def password(self, name: str) -> str:
+        """What the bus knows a process by."""
+        return self._passwords[name]
 
     @property
     def said_something(self) -> bool:

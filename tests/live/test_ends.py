@@ -254,7 +254,7 @@ def test_few_descriptors_are_said_before_anything_starts(start: Start) -> None:
     mission = start(shell="ulimit -n 24")
     status, said = _end(mission)
     assert status == 2
-    assert said == ("onehop: open files: 24 are allowed here, 55 are needed; ulimit -n 55 or more")
+    assert said == ("onehop: open files: 24 are allowed here, 56 are needed; ulimit -n 56 or more")
 
 
 def test_a_soft_limit_of_descriptors_is_raised(start: Start) -> None:

@@ -1,4 +1,4 @@
-"""Scripted faults of every kind: processes write the same bytes as one process, real signals included."""
+"""Scripted faults of every kind: processes write the same bytes as one process, real signals too."""
 
 import os
 import signal

@@ -73,7 +73,7 @@ class Faults:
         due = [one for one in self._waiting if one.time_ns <= time_ns]
         self._waiting = [one for one in self._waiting if one.time_ns > time_ns]
         scripted = [one.fault for one in sorted(due, key=lambda one: one.number)]
-        return tuple(dict.fromkeys(_begun(fault, at_s) for fault in (*scripted, *by_hand)))
+        return tuple(dict.fromkeys(fault.begun(at_s) for fault in (*scripted, *by_hand)))
 
     def begin(self, fault: FaultSection, time_ns: int) -> None:
         """Put a fault into force that lasts, or end what one heals."""
@@ -133,10 +133,6 @@ class Faults:
         if fault.direction == "to":
             return Cut(side_a=rest, side_b=fault.robots, one_way=True)
         return Cut(side_a=fault.robots, side_b=rest, one_way=fault.direction == "from")
-
-
-def _begun(fault: FaultSection, at_s: float) -> FaultSection:
-    return fault.begun(at_s, tuple(sorted(set(fault.robots))))
 
 
 def _actor(fault: FaultSection, event: MissionEvent) -> tuple[int, ...]:

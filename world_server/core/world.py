@@ -34,6 +34,7 @@ from world_server.core.laser import Laser
 from world_server.core.late_actions import LateActions
 from world_server.core.mission_events import EventDetector
 from world_server.core.motion import Motion
+from world_server.core.orders import Judge
 from world_server.core.placement import start_poses
 from world_server.core.referee import Referee, TickSummary
 
@@ -55,6 +56,7 @@ class World:
         self._poses = start_poses(scenario, walls)
         self._walls, self._inflation = walls, scenario.planner.inflation
         require_free_targets(scenario.faults, walls, self._inflation)
+        self._judge = Judge(self._robots, walls, self._inflation)
         self._twists = np.zeros((len(self._robots), 2))
         self._laser = Laser(walls, scenario.robot)
         self._motion = Motion(walls, scenario.robot, self._period_ns)
@@ -123,8 +125,8 @@ class World:
         """Let one period pass. A present robot without an action stands still.
 
         by_hand: faults that begin with the next tick, beside those of the script. Actions of robots that
-        are not present, or of an earlier incarnation, are ignored. Raises ValueError for a twist that is
-        not a number: a broken robot, not a state of the world.
+        are not present or are stopped, or of an earlier incarnation, are ignored. Raises ValueError for
+        a twist that is not a number: a broken robot, not a state of the world.
         """
         faults = self._faults
         self._take_over(self._late_actions.effective(actions, self.tick, faults.delays, faults.stopped))
@@ -135,6 +137,10 @@ class World:
         self._begin_tick(by_hand)
         if self._outcome is None:
             self._outcome = self._referee.judge(self._tick_summary(), self._faults.will_restart)
+
+    def refusal(self, fault: FaultSection) -> str | None:
+        """Why a fault that is ordered by hand cannot be carried out; None if it can."""
+        return self._judge.refusal(fault, self.truth())
 
     def fence(self, robot: int, why: str) -> None:
         """Take a robot out of the mission, as of the next truth(): its process died or fell silent."""
@@ -211,6 +217,7 @@ class World:
             if (
                 action is None
                 or not self._present[robot]
+                or robot in self._faults.stopped
                 or action.incarnation != self._incarnation[robot]
             ):
                 continue
