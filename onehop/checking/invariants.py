@@ -31,6 +31,23 @@ INVARIANTS: dict[str, str] = {
 }
 """In the order in which they are told."""
 
+COUNTED: dict[str, str] = {
+    COMPLETE: "ticks",
+    DIGEST: "logs",
+    OWN_VOICE: "ticks of robots",
+    SILENCE: "ticks of absent robots",
+    MEDIAN: "rosters",
+    SHAPE: "shapes",
+    EPOCHS: "ticks of robots",
+    ONE_LEADER: "ticks",
+    RE_ELECTION: "elections",
+    RADIO_INTEGRITY: "verdicts",
+    FAULT_BIT: "faults",
+    NO_COLLISION: "ticks of robots",
+    MOTION: "ticks of robots",
+}
+"""What is counted of each, in the plural."""
+
 UNEXERCISED: dict[str, str] = {
     DIGEST: "the log has no outcome to be held against",
     SILENCE: "no robot left the mission or was stopped",

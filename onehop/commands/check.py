@@ -6,6 +6,7 @@ from typing import Any
 
 from onehop.checking import INVARIANTS, Report, judge
 from onehop.checking.findings import Violation
+from onehop.checking.invariants import COUNTED
 from onehop.commands.logs import open_with_warning, warn_of_flaws
 from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
@@ -59,11 +60,11 @@ def _print(log: LogFile, report: Report, period_s: float) -> None:
     print(f"{report.ticks} ticks ({length_s:.2f} s) of {robots}, profile {team.profile}")
     for name, times in report.checked.items():
         if name in report.unexercised:
-            print(f"  {name:<16} never exercised: {report.unexercised[name]}")
+            print(f"  {name:<16} {'not asked':<11} never exercised: {report.unexercised[name]}")
             continue
         broken = report.broken.get(name, 0)
-        verdict = f"{'BROKEN':<7} {broken} times in" if broken else f"{'held':<7}"
-        print(f"  {name:<16} {verdict} {times} checked: {INVARIANTS[name]}")
+        verdict = f"BROKEN {broken}x" if broken else "held"
+        print(f"  {name:<16} {verdict:<11} {f'{times} {COUNTED[name]}':<30} {INVARIANTS[name]}")
     for name in report.broken:
         _print_violations(report, name, period_s)
 

@@ -20,7 +20,7 @@ from onehop.mission.injection import inject
 from onehop.mission.rendezvous import FILE, way_into
 from onehop.node.bus import open_client
 from onehop.wire.log_reader import LogFile, digest
-from tests.live.mission import DEADLINE_S, Mission, gone
+from tests.live.mission import DEADLINE_S, Mission, gone, proven
 from tests.onehop.scenes import field, log_of
 
 pytestmark = pytest.mark.live
@@ -50,10 +50,10 @@ def onehop(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 def ended(mission: Mission) -> LogFile:
-    """The log of a mission that is stopped now; it happens again."""
+    """The log of a mission that is stopped now; it happens again, and every promise held."""
     mission.child.send_signal(signal.SIGINT)
     mission.child.communicate(timeout=DEADLINE_S)
-    log = LogFile(mission.out / "mission.mcap")
+    log = proven(mission.out / "mission.mcap")
     report = replay(log)
     assert (report.divergences, report.flaws) == (0, [])
     return log

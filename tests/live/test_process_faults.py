@@ -8,11 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from onehop.drivers.replay import replay
 from onehop.mission.operator import STOPPED
 from onehop.node.bus import LEASE_MS
 from onehop.wire.log_reader import LogFile, digest
-from tests.live.mission import DEADLINE_S, Mission, gone
+from tests.live.mission import DEADLINE_S, Mission, gone, proven
 from tests.onehop.scenes import field, log_of
 from world_server.process_faults import RESTART_S
 
@@ -69,8 +68,7 @@ def test_a_process_that_is_asked_to_end_ends_as_the_table_says(
     assert (summary["outcome"], summary["reason"]) == (outcome, reason)
     assert mission.child.returncode == 1
     assert gone(list(children.values()))
-    log = LogFile(mission.out / "mission.mcap")
-    assert replay(log).divergences == 0
+    log = proven(mission.out / "mission.mcap")
     assert log.torn == (victim == "onehop.recorder")
     if victim != "onehop.recorder":
         assert digest(log) == summary["digest"]
@@ -106,7 +104,7 @@ def test_a_restart_that_nobody_carries_out_ends_the_mission(tmp_path: Path) -> N
         mission.child.send_signal(signal.SIGCONT)
         reason = f"not started within {RESTART_S:g} s: robot-2"
         assert mission.finish()["reason"] == reason
-        assert replay(LogFile(mission.out / "mission.mcap")).divergences == 0
+        proven(mission.out / "mission.mcap")
     finally:
         mission.child.kill()
         mission.child.communicate()
