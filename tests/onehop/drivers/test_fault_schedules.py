@@ -9,6 +9,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from onehop.checking import judge
+from onehop.checking.invariants import NO_COLLISION
 from onehop.contracts import topics
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.fault_section import KINDS, OWN_KEYS, in_toml
@@ -70,6 +72,8 @@ def test_every_schedule_of_faults_ends_in_a_log_that_happens_again(
         log = LogFile(Path(folder) / "mission.mcap")
         report = replay(log)
         assert (report.divergences, report.flaws) == (0, [])
+        broken = [one for one in judge(log).violations if one.invariant != NO_COLLISION]
+        assert broken == [], script
         _each_message_has_its_verdict(log, routing)
 
 
