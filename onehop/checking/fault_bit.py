@@ -59,7 +59,7 @@ class FaultBit:
         self._judge_robots(now, truth)
         if self._is_known:
             for what, expected, found in self._states(now, truth):
-                self._compare(now, what, Counter(expected), Counter(found))
+                self._compare(now, what, list(expected), list(found))
         self._before = now.present
 
     def _judge_due(self, now: Snapshot, truth: Truth, due: list[FaultSection]) -> None:
@@ -153,16 +153,15 @@ class FaultBit:
         yield "jam", map(_jam, force.of_kind("jam")), truth.jams
         yield "corruption", map(self._corruption, force.of_kind("corrupt")), truth.corruptions
 
-    def _compare(
-        self, now: Snapshot, what: str, expected: Counter[State], found: Counter[State]
-    ) -> None:
+    def _compare(self, now: Snapshot, what: str, expected: list[State], found: list[State]) -> None:
         if expected == found:
             return
-        for state in expected - found:
+        to_be, is_so = Counter(expected), Counter(found)
+        for state in to_be - is_so:
             wrong = f"a {what} that is to be in force is not: {state}"
             said = now.exhibit(topics.TRUTH, f"no such {what}")
             self._findings.report_state(FAULT_BIT, now.tick, _robots_of(state), wrong, said)
-        for state in found - expected:
+        for state in is_so - to_be:
             wrong = f"a {what} is in force that nobody ordered, or that is over: {state}"
             said = now.exhibit(topics.TRUTH, str(state))
             self._findings.report_state(FAULT_BIT, now.tick, _robots_of(state), wrong, said)

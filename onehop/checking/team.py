@@ -159,16 +159,15 @@ class Team:
         if known is None:
             return
         self._findings.count(EPOCHS)
-        before = known.status
-        evidence = [_exhibit_of(now.tick - 1, robot, before), now.status_of(robot)]
+        before, wrong = known.status, None
         if is_newer(before.epoch, status.epoch):
-            what = f"the epoch of robot {robot} goes back from {before.epoch} to {status.epoch}"
-            self._findings.report(EPOCHS, now.tick, (robot,), what, *evidence)
+            wrong = f"the epoch of robot {robot} goes back from {before.epoch} to {status.epoch}"
         elif self._has_epoch_rules and status.epoch == before.epoch:
             wrong = self._wrong_change(robot, status, known, orders)
-            if wrong is not None:
-                evidence += _as_exhibits(now, robot, orders)
-                self._findings.report(EPOCHS, now.tick, (robot,), wrong, *evidence)
+        if wrong is not None:
+            evidence = [_exhibit_of(now.tick - 1, robot, before), now.status_of(robot)]
+            evidence += _as_exhibits(now, robot, orders)
+            self._findings.report(EPOCHS, now.tick, (robot,), wrong, *evidence)
 
     @staticmethod
     def _wrong_change(
