@@ -16,8 +16,9 @@ $(STAMP): pyproject.toml constraints.txt
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
 	touch $@
 
-demo: setup  ## a recorded mission of nine processes, its summary and its figure
+demo: setup  ## a recorded mission of nine processes, its summary and its figure, and that it kept every promise
 	$(BIN)/onehop run scenarios/map1.toml --out runs/demo
+	$(BIN)/onehop check runs/demo/mission.mcap
 
 test: check fast slow live  ## all checks and tests, fast first
 

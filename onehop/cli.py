@@ -141,6 +141,76 @@ def replay(
 
 
 @app.command()
+def check(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    only: Annotated[
+        list[str],
+        Option("--only", metavar="ID", help="Only this invariant (repeatable): docs/checking.md."),
+    ] = [],  # noqa: B006
+    as_json: AsJson = False,
+) -> None:
+    """Test from the log alone that every promise held: leaders, epochs, radio, faults, contacts.
+
+    Exit status 1 when an invariant is broken.
+
+    Example: onehop check runs/demo/mission.mcap
+    """
+    from onehop.commands import check as command
+
+    _leave(command.check(log, only, as_json))
+
+
+@app.command()
+def fault(
+    kind: Annotated[
+        str,
+        Argument(
+            help="kill, stop, continue, restart, hold, kidnap, blind, slow, cut, corrupt, jam or heal."
+        ),
+    ],
+    robots: Annotated[str, Argument(help="Which robots, e.g. 3 or 1,4.")] = "",
+    duration_s: Annotated[
+        float | None, Option("--for", help="How long [s, simulated]; by default until healed.")
+    ] = None,
+    mission: Annotated[
+        Path | None, Option(help="Output folder of the mission (default: the one that runs).")
+    ] = None,
+    others: Annotated[str, Option(help="Cut from these robots (default: from all the rest).")] = "",
+    direction: Annotated[str | None, Option(help="Of a cut: both, from or to.")] = None,
+    x: Annotated[float | None, Option(help="Where: kidnap, jam [m].")] = None,
+    y: Annotated[float | None, Option(help="Where: kidnap, jam [m].")] = None,
+    heading_deg: Annotated[
+        float | None, Option("--heading", help="Of a kidnapped robot [degrees].")
+    ] = None,
+    radius: Annotated[float | None, Option(help="Of a jammed disc [m].")] = None,
+    noise_dbm: Annotated[float | None, Option("--noise", help="Of a jam, at receivers [dBm].")] = None,
+    probability: Annotated[float | None, Option(help="Share of payloads corrupted.")] = None,
+    delay_ticks: Annotated[
+        int | None, Option("--delay", help="How late a slow robot acts [ticks].")
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Do something bad to a mission that runs: it takes effect with the next tick, and is in its log.
+
+    Example: onehop fault kill 3
+    """
+    from onehop.commands import fault as command
+
+    given = {
+        "duration_s": duration_s,
+        "direction": direction,
+        "x": x,
+        "y": y,
+        "heading_deg": heading_deg,
+        "radius": radius,
+        "noise_dbm": noise_dbm,
+        "probability": probability,
+        "delay_ticks": delay_ticks,
+    }
+    _leave(command.fault(kind, robots, others, mission, given, as_json))
+
+
+@app.command()
 def elect(
     ids: Annotated[str, Argument(help="Robot ids, e.g. 1,2,4,5.")],
     narrow: Annotated[bool, Option("--narrow", help="In a narrow passage.")] = False,

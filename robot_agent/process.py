@@ -2,12 +2,13 @@
 
 import os
 import signal
+import time
 
 from onehop.contracts import topics
 from onehop.contracts.briefings import Briefing
 from onehop.contracts.messages import Inbox, Observation, percept
 from onehop.node import startup
-from onehop.node.bus import GONE, Bus
+from onehop.node.bus import ALIVE, GONE, Bus
 from onehop.wire.batch import unpack_tick
 from onehop.wire.codec import decode, encode
 from robot_agent.core.robot import Robot
@@ -27,17 +28,38 @@ def main() -> int:
         return _serve(bus, robot, name)
 
 
+REUNION_S = 10.0
+"""How long a process that was stopped looks for the world [s], when its session has been given up."""
+
+
 def _serve(bus: Bus, robot: Robot, name: str) -> int:
     put = bus.publisher(topics.by(name, topics.OUT))
+    put_awake = bus.publisher(topics.by(name, topics.AWAKE))
     bus.announce(name)
+    will_be_stopped = False
     while True:
         what, data = bus.receive()
         if what == topics.PERCEPT:
             _, ((_, seen), (_, heard)) = unpack_tick(data)
             put(encode(robot.step(percept(decode(Observation, seen), decode(Inbox, heard)))))
+            will_be_stopped = False
+        elif what in (topics.STOP, topics.WAKE):
+            will_be_stopped = True
+            put_awake(b"")
         elif what == topics.KILL:
             os.kill(os.getpid(), signal.SIGKILL)
         elif what == topics.END:
             return 0
-        elif what == topics.alive(topics.WORLD) and data == GONE:
+        elif (what, data) == (topics.alive(topics.WORLD), GONE) and not (
+            will_be_stopped and _finds_world(bus)
+        ):
             return startup.WORLD_IS_GONE
+
+
+def _finds_world(bus: Bus) -> bool:
+    """Whether the world comes back in time; what it says before is lost, and it will ask again."""
+    deadline = time.monotonic() + REUNION_S
+    while (received := bus.receive_by(deadline)) is not None:
+        if received == (topics.alive(topics.WORLD), ALIVE):
+            return True
+    return False

@@ -10,6 +10,7 @@ from onehop.contracts import topics
 from onehop.contracts.messages import Outcome
 from onehop.wire.codec import encode
 from world_server.core.world import World
+from world_server.fault_orders import FaultOrders
 from world_server.process_faults import ProcessFaults
 from world_server.progress import ProgressReports
 from world_server.recording import Recording
@@ -25,6 +26,7 @@ class LockStep:
     radio: RemoteRadio
     robots: RemoteRobots
     faults: ProcessFaults
+    orders: FaultOrders
     recording: Recording
     progress: ProgressReports
 
@@ -38,7 +40,7 @@ class LockStep:
     def _tick(self) -> Outcome | None:
         world = self.world
         truth = world.truth()
-        self.faults.carry_out(truth, world.due_faults())
+        self.faults.carry_out(truth)
         encoded_truth = encode(truth)
         self.radio.send(encoded_truth)
         observations = [(topics.obs(i), encode(seen)) for i, seen in world.observe().items()]
@@ -47,8 +49,9 @@ class LockStep:
         self.recording.add(
             truth.tick, [(topics.TRUTH, encoded_truth), *carried, *observations, *answers.wire]
         )
-        world.advance(answers.actions)
+        world.advance(answers.actions, self.orders.take(world))
         for robot, why in answers.fenced.items():
             world.fence(robot, why)
+        self.orders.confirm(world)
         self.progress.report(truth, answers.actions)
         return world.outcome()

@@ -17,6 +17,7 @@ from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
 from world_server.briefings import Briefings
 from world_server.core.world import World
+from world_server.fault_orders import FaultOrders
 from world_server.lockstep import LockStep
 from world_server.mailbox import Mailbox, MissionBrokenError
 from world_server.process_faults import ProcessFaults
@@ -78,7 +79,8 @@ def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str
         world,
         RemoteRadio(bus, mail, silence_s),
         RemoteRobots(bus, mail, roll, robots, silence_s),
-        ProcessFaults(bus, mail, roll, robots, open_briefings),
+        ProcessFaults(bus, mail, roll, robots, open_briefings, silence_s),
+        FaultOrders(bus, mail),
         recording,
         ProgressReports(bus),
     )

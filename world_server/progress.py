@@ -1,9 +1,10 @@
-"""Some numbers for people, some times a second."""
+"""What people are shown: some numbers, some times a second, and each fault that begins."""
 
 import time
 from collections.abc import Mapping
 
 from onehop.contracts import topics
+from onehop.contracts.fault_section import fault_in_words
 from onehop.contracts.messages import Action, Progress, RobotProgress, Truth
 from onehop.node.bus import Bus
 from onehop.wire.codec import encode
@@ -17,10 +18,16 @@ class ProgressReports:
 
     def __init__(self, bus: Bus) -> None:
         self._put = bus.publisher(topics.to(topics.OPERATOR, topics.PROGRESS), express=False)
+        self._tell = bus.publisher(topics.to(topics.OPERATOR, topics.TOLD))
         self._next_s = 0.0
 
     def report(self, truth: Truth, actions: Mapping[int, Action]) -> None:
-        """Report a tick, if it is time. actions: by robot, ids ascending."""
+        """Tell of the faults of a tick, and report it, if it is time.
+
+        actions: by robot, ids ascending.
+        """
+        for fault in truth.faults:
+            self._tell(f"{truth.time_ns / 1e9:g} s: {fault_in_words(fault)}".encode())
         now = time.monotonic()
         if now < self._next_s:
             return

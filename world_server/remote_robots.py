@@ -7,7 +7,7 @@ from functools import partial
 from onehop.contracts import topics
 from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import Action, Truth
+from onehop.contracts.messages import Action, Truth, running
 from onehop.node.bus import Bus
 from onehop.wire.batch import pack_tick
 from onehop.wire.codec import decode
@@ -55,16 +55,16 @@ class RemoteRobots:
     def step(
         self, truth: Truth, observations: Mapping[str, bytes], inboxes: Mapping[str, bytes]
     ) -> Answers:
-        """Let every present robot take its step, and wait for all of them.
+        """Let every robot that runs take its step, and wait for all of them.
 
         observations, inboxes: wire messages of this tick by log channel. Raises MissionBrokenError.
         """
         self._tick = truth.tick
         self._incarnations = {one.robot: one.incarnation for one in truth.present}
-        self._awaited = {topics.robot_name(i): number for i, number in self._incarnations.items()}
+        self._awaited = {topics.robot_name(one.robot): one.incarnation for one in running(truth)}
         self._given.clear()
         self._refused.clear()
-        for one in truth.present:
+        for one in running(truth):
             seen, heard = topics.obs(one.robot), topics.rx(one.robot)
             if heard not in inboxes:
                 raise MissionBrokenError(f"the radio carried no inbox for robot {one.robot}")
@@ -77,7 +77,7 @@ class RemoteRobots:
 
     def _answers(self, truth: Truth) -> Answers:
         answers = Answers()
-        for one in truth.present:
+        for one in running(truth):
             i = one.robot
             if self._unasked.pop(i, None) == one.incarnation:
                 self._given.pop(i, None)

@@ -30,6 +30,7 @@ class RollCall:
         self._present: set[str] = set()
         self._awaited: frozenset[str] = frozenset()
         self._incarnations = dict.fromkeys(self.everyone, 0)
+        self._died: dict[str, int] = {}
         for name in self.everyone:
             mail.read(topics.WORLD, topics.alive(name), partial(self._on_token, name))
         mail.read(topics.OPERATOR, topics.DIED, self._on_death)
@@ -42,6 +43,10 @@ class RollCall:
     def incarnation(self, name: str) -> int:
         """How often this process has been started again."""
         return self._incarnations[name]
+
+    def has_died(self, name: str) -> bool:
+        """Whether the launcher has told of the end of the present process of this name."""
+        return self._died.get(name) == self._incarnations[name]
 
     def expect_again(self, name: str, incarnation: int) -> None:
         """The process of this name is about to be started again."""
@@ -69,5 +74,6 @@ class RollCall:
 
     def _on_death(self, data: bytes) -> None:
         death = decode(Death, data)
+        self._died[death.name] = death.incarnation
         if self._is_needed(death.name) and death.incarnation == self._incarnations[death.name]:
             self._mail.break_off(death.account)

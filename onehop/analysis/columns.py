@@ -129,6 +129,20 @@ def _requests(truth: Truth) -> Sequence[_Request]:
     ]
 
 
+class _Impairment(NamedTuple):
+    robot: int
+    how: str
+    delay_ticks: int
+
+
+def _impaired(truth: Truth) -> Sequence[_Impairment]:
+    return [
+        *(_Impairment(robot, "stopped", 0) for robot in truth.stopped),
+        *(_Impairment(robot, "blind", 0) for robot in truth.blind),
+        *(_Impairment(one.robot, "slow", one.delay_ticks) for one in truth.slow),
+    ]
+
+
 class _ControlBytes(NamedTuple):
     kind: str
     bytes: int
@@ -206,11 +220,29 @@ TABLES: dict[str, TableSpec] = {
         "a robot that left", "truth", attrgetter("departures"), (_C("robot", INTEGER), _C("why", WORD)),
     ),
     "cuts": TableSpec(
-        "a cut in force", "truth", attrgetter("cuts"), (_C("side_a", INTEGERS), _C("side_b", INTEGERS)),
+        "a cut in force", "truth", attrgetter("cuts"),
+        (_C("side_a", INTEGERS), _C("side_b", INTEGERS), _C("one_way", FLAG)),
     ),
     "jams": TableSpec(
         "a jam in force", "truth", attrgetter("jams"),
         (_C("x", REAL), _C("y", REAL), _C("radius", REAL), _C("noise_dbm", REAL)),
+    ),
+    "corruptions": TableSpec(
+        "a corruption in force", "truth", attrgetter("corruptions"),
+        (_C("robots", INTEGERS), _C("probability", REAL)),
+    ),
+    "impaired": TableSpec(
+        "a robot that is stopped, blind or slow", "truth", _impaired,
+        (_C("robot", INTEGER), _C("how", WORD), _C("delay_ticks", INTEGER)),
+    ),
+    "faults": TableSpec(
+        "a fault that begins, by script or by hand", "truth", attrgetter("faults"),
+        (
+            _C("kind", WORD), _C("robots", INTEGERS), _C("others", INTEGERS), _C("duration_s", REAL),
+            _C("x", REAL), _C("y", REAL), _C("heading_deg", REAL), _C("radius", REAL),
+            _C("noise_dbm", REAL), _C("direction", WORD), _C("probability", REAL),
+            _C("delay_ticks", INTEGER),
+        ),
     ),
     "scans": TableSpec(
         "a laser scan (`ranges` is a matrix)", "obs/", _whole,

@@ -196,6 +196,10 @@ def _events(notes: Table, start_s: float) -> tuple[dict[str, Any], ...]:
     )
 
 
+_ONE_WAY = {True: ": they hear nothing of it", False: ": it hears nothing of them"}
+"""By whether a robot is on the side that does not get through."""
+
+
 def _faults(log: Log, robot: int, at_s: float) -> list[str]:
     truth: Truth | None = next((truth for _, truth in log.truths(at_s, at_s)), None)
     if truth is None:
@@ -205,6 +209,20 @@ def _faults(log: Log, robot: int, at_s: float) -> list[str]:
         if presence.robot == robot:
             if presence.held:
                 words.append("it is held: it stands still whatever it commands")
+            if robot in truth.stopped:
+                words.append("its process is stopped: it computes nothing, and what it is sent waits")
+            if robot in truth.blind:
+                words.append("it is blind: its laser sees nothing")
+            words += [
+                f"it is slow: what it does takes effect {one.delay_ticks} ticks late"
+                for one in truth.slow
+                if one.robot == robot
+            ]
+            words += [
+                f"{100.0 * one.probability:g} % of the messages to it are corrupted"
+                for one in truth.corruptions
+                if robot in one.robots
+            ]
             words += [
                 f"jammed: inside {jam.radius:g} m of ({jam.x:g}, {jam.y:g})"
                 for jam in truth.jams
@@ -213,5 +231,6 @@ def _faults(log: Log, robot: int, at_s: float) -> list[str]:
     for cut in truth.cuts:
         for mine, other in ((cut.side_a, cut.side_b), (cut.side_b, cut.side_a)):
             if robot in mine:
-                words.append(f"cut off from {', '.join(map(str, other))}")
+                cut_off = f"cut off from {', '.join(map(str, other))}"
+                words.append(cut_off + (_ONE_WAY[mine is cut.side_a] if cut.one_way else ""))
     return words

@@ -16,6 +16,7 @@ LEAST_SNR_DB = -50.0
 """Below it nothing was received to speak of: out of all reach, cut off, or drowned by its own frame."""
 
 WHY_LOST = {
+    DeliveryStatus.CORRUPTED: "it arrived with other bytes than were sent, and was refused",
     DeliveryStatus.BELOW_THRESHOLD: "the signal was too weak: distance, a wall, a cut link or a jammer",
     DeliveryStatus.BIT_ERRORS: "received, but with bit errors",
     DeliveryStatus.COLLISION: "another frame was sent at the same time and drowned it",

@@ -37,7 +37,7 @@ class FilmFrames:
 
     def __init__(self, log: Log) -> None:
         self._log = log
-        tables = log.tables("poses", "status")
+        tables = log.tables("poses", "status", "jams")
         self._colours = robot_colours(log.robots)
         if not len(tables["poses"]):
             raise InputError(str(log.path), "has not one tick to show", "give a log of a longer mission")
@@ -45,7 +45,7 @@ class FilmFrames:
         self._leaders = _leaders(tables["status"], log.robots, self._ticks)
         figure = Figure(figsize=(7.2, 7.2), dpi=100)
         self._axes = figure.add_axes((0.085, 0.065, 0.90, 0.90))
-        draw_ground(self._axes, log.bundle)
+        draw_ground(self._axes, log.bundle, tables["jams"])
         canvas: Any = backend_agg.FigureCanvasAgg(figure)
         self._canvas = canvas
         self._canvas.draw()

@@ -9,6 +9,7 @@ from matplotlib.colors import ListedColormap
 from matplotlib.patches import Circle
 
 from onehop.analysis.palette import BAD, INK, WALL, WALL_EDGE
+from onehop.analysis.tables import Table
 from onehop.contracts.scenario import Scenario
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
@@ -18,8 +19,8 @@ _RASTER = 700
 """Points along the longer side at which a grid map is asked what is filled."""
 
 
-def draw_ground(axes: Axes, bundle: Bundle) -> None:
-    """Map, goal and jams of a scenario, axes in metres, at equal scale."""
+def draw_ground(axes: Axes, bundle: Bundle, jams: Table) -> None:
+    """Map, goal and what was jammed, axes in metres, at equal scale. jams: the table of that name."""
     walls = load_map(bundle.scenario.map, bundle.files)
     xmin, ymin, xmax, ymax = walls.bounds
     obstacles = bundle.scenario.map.obstacles
@@ -30,14 +31,13 @@ def draw_ground(axes: Axes, bundle: Bundle) -> None:
     segments: Any = walls.segments.reshape(-1, 2, 2)
     axes.add_collection(LineCollection(segments, colors=WALL_EDGE, linewidths=1.0, zorder=1.1))
     _draw_goal(axes, bundle.scenario)
-    for fault in bundle.scenario.faults:
-        if fault.kind == "jam":
-            axes.add_patch(
-                Circle(
-                    (fault.x, fault.y), fault.radius, facecolor="none", edgecolor=BAD, hatch="..",
-                    linestyle="--", linewidth=0.8, alpha=0.5, zorder=1.2,
-                )
-            )  # fmt: skip
+    for x, y, radius in sorted(set(jams.rows("x", "y", "radius"))):
+        axes.add_patch(
+            Circle(
+                (x, y), radius, facecolor="none", edgecolor=BAD, hatch="..",
+                linestyle="--", linewidth=0.8, alpha=0.5, zorder=1.2,
+            )
+        )  # fmt: skip
     margin = 0.02 * max(xmax - xmin, ymax - ymin)
     axes.set_xlim(xmin - margin, xmax + margin)
     axes.set_ylim(ymin - margin, ymax + margin)

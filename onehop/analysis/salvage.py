@@ -15,7 +15,7 @@ from onehop.analysis.copying import LogCopy, parsed
 from onehop.analysis.survey import Survey, survey, tick_of
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import Truth
+from onehop.contracts.messages import Truth, running
 from onehop.wire.audit import audit
 from onehop.wire.codec import decode
 from onehop.wire.contents import records_of
@@ -152,7 +152,7 @@ def _is_whole(one: _Tick, following: _Tick | None, is_last: bool) -> bool:
         return False
     after = None if following is None else following.truth()
     gone = set() if after is None else {departure.robot for departure in after.departures}
-    present = [presence.robot for presence in truth.present]
+    present = [presence.robot for presence in running(truth)]
     return all(
         topics.rx(robot) in one.wire
         and topics.obs(robot) in one.wire

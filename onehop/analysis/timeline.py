@@ -1,5 +1,6 @@
 """What happened to whom and when: departures, leaders, modes, faults; for figures and text."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import groupby
 from operator import itemgetter
@@ -10,9 +11,9 @@ from msgspec.structs import replace
 
 from onehop.analysis.columns import Column
 from onehop.analysis.tables import Table
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.leadership import LeadershipHistory
 from onehop.contracts.messages import LeadershipTerm
-from onehop.contracts.sections import FaultSection
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,25 +118,38 @@ def spans(time_s: Column, values: Column, gap_s: float, shortest_s: float = 0.0)
 
 
 def fault_spans(tables: dict[str, Table], period_s: float) -> list[Span]:
-    """Holds, cuts and jams as they were in force, whoever caused them. Tables: poses, cuts, jams."""
+    """What lasted, as it was in force, whoever caused it.
+
+    Tables: poses, cuts, jams, corruptions, impaired.
+    """
     gap_s = 1.5 * period_s
     poses, cuts, jams = tables["poses"], tables["cuts"], tables["jams"]
     held = poses.where(poses["held"])
-    found = []
-    for robot in np.unique(held["robot"]).tolist():
-        own = held.of(robot)
-        found += spans(own["time_s"], np.full(len(own), f"hold {robot}"), gap_s)
-    names = np.array([f"cut {_ids(a)}" for a in cuts["side_a"]], dtype=np.str_)
+    found = _each(held["time_s"], _names(f"hold {robot}" for robot in held["robot"]), gap_s)
+    impaired = tables["impaired"]
+    names = _names(f"{_KIND[how]} {robot}" for robot, how in impaired.rows("robot", "how"))
+    found += _each(impaired["time_s"], names, gap_s)
+    corruptions = tables["corruptions"]
+    names = _names(f"corrupt {_ids(robots)}" for robots in corruptions["robots"])
+    found += _each(corruptions["time_s"], names, gap_s)
+    names = _names(
+        f"cut {_ids(a)}" + (f" one way to {_ids(b)}" if one_way else "")
+        for a, b, one_way in cuts.rows("side_a", "side_b", "one_way")
+    )
     found += _each(cuts["time_s"], names, gap_s)
-    names = np.array(
-        [
-            f"jam at ({x:.0f}, {y:.0f}) m, {r:.0f} m wide"
-            for x, y, r in zip(jams["x"], jams["y"], jams["radius"], strict=True)
-        ],
-        dtype=np.str_,
+    names = _names(
+        f"jam at ({x:.0f}, {y:.0f}) m, {r:.0f} m wide" for x, y, r in jams.rows("x", "y", "radius")
     )
     found += _each(jams["time_s"], names, gap_s)
     return sorted(found, key=lambda span: (span.start_s, span.what))
+
+
+_KIND = {"stopped": "stop", "blind": "blind", "slow": "slow"}
+"""Kind of fault that makes a robot what it is."""
+
+
+def _names(names: Iterable[str]) -> Column:
+    return np.array(list(names), dtype=np.str_)
 
 
 def _each(time_s: Column, names: Column, gap_s: float) -> list[Span]:
@@ -150,12 +164,10 @@ def _ids(robots: tuple[int, ...]) -> str:
     return " ".join(map(str, robots))
 
 
-def describe_fault(fault: FaultSection) -> str:
-    """A scripted fault in words, e.g. "kill 3", "jam within 8 m of (40, 40), 20 s"."""
-    who = ", ".join(map(str, fault.robots))
-    what = {
-        "jam": f"jam within {fault.radius:g} m of ({fault.x:g}, {fault.y:g})",
-        "cut": f"cut {who} from {', '.join(map(str, fault.others)) or 'the rest'}",
-        "heal": f"heal {who or 'everything'}",
-    }.get(fault.kind, f"{fault.kind} {who}")
-    return what + (f", {fault.duration_s:g} s" if fault.duration_s else "")
+def begun_faults(faults: Table) -> list[FaultSection]:
+    """The faults of a mission when they began, by script or by hand, from the table `faults`."""
+    keys = [key for key in faults if key not in ("tick", "time_s")]
+    return [
+        FaultSection(at_s=at_s, **dict(zip(keys, values, strict=True)))
+        for at_s, *values in faults.rows("time_s", *keys)
+    ]

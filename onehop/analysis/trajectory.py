@@ -16,7 +16,8 @@ from onehop.analysis.ground import draw_ground
 from onehop.analysis.log import Log
 from onehop.analysis.palette import BAD, INK, robot_colours
 from onehop.analysis.tables import Table
-from onehop.analysis.timeline import LastSeen, departures, describe_fault, leadership
+from onehop.analysis.timeline import LastSeen, begun_faults, departures, leadership
+from onehop.contracts.fault_section import FaultSection, fault_in_words
 from onehop.contracts.messages import LeadershipTerm
 from onehop.contracts.printable import printable
 from onehop.wire.log_reader import LogFile
@@ -29,6 +30,9 @@ _SAMPLE_S = 0.5
 
 _NAMED_S = 2.0
 """A lead that lasted less has a ring but no name [s]."""
+
+MOST_FAULTS = 20
+"""Faults that the legend has room for."""
 
 _HALO = [withStroke(linewidth=2.5, foreground="white")]
 
@@ -45,7 +49,7 @@ def draw_trajectory(log: LogFile, path: Path) -> None:
 
 
 def figure_of(log: Log, tables: dict[str, Table]) -> Figure:
-    """The figure, not yet bound to a canvas; tables: poses, status, departures and contacts."""
+    """The figure, not yet bound to a canvas; tables: those of _tables."""
     with mpl.rc_context({"text.parse_math": False}):
         figure = Figure(figsize=(10.5, 8.2))
         axes = figure.add_axes((0.06, 0.06, 0.68, 0.89))
@@ -58,9 +62,11 @@ def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
     poses, status = tables["poses"], tables["status"]
     colours = robot_colours(log.robots)
     gone = departures(poses, tables["departures"])
-    draw_ground(axes, log.bundle)
+    draw_ground(axes, log.bundle, tables["jams"])
+    faults = begun_faults(tables["faults"])[:MOST_FAULTS]
     for robot, colour in colours.items():
-        _draw_path(axes, poses.of(robot), colour)
+        carried = [f.at_s or 0.0 for f in faults if f.kind == "kidnap" and robot in f.robots]
+        _draw_path(axes, poses.of(robot), carried, colour)
     _draw_formations(axes, poses, status, colours)
     _draw_holds(axes, poses, colours)
     for departure in gone:
@@ -69,7 +75,7 @@ def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
         axes.plot(x, y, marker="P", color=BAD, markersize=7, zorder=8)
     _draw_leaders(axes, poses, leadership(status, tables["departures"], log.period_ns).main, colours)
     axes.legend(
-        handles=_legend(log, gone, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
+        handles=_legend(log, gone, faults, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
         frameon=False, fontsize=9, borderaxespad=0.0,
     )  # fmt: skip
     axes.set_title(_title(log), loc="left", fontsize=11)
@@ -82,11 +88,13 @@ def _tables(log: Log) -> dict[str, Table]:
         for message in log.messages("truth", "out/")
         if message.key == "truth" or message.tick % stride == 0
     )
-    return log.build(("poses", "status", "departures", "contacts"), chosen)
+    return log.build(("poses", "status", "departures", "contacts", "jams", "faults"), chosen)
 
 
-def _draw_path(axes: Axes, own: Table, colour: str) -> None:
+def _draw_path(axes: Axes, own: Table, carried: list[float], colour: str) -> None:
+    """carried: when the robot was put elsewhere [s]."""
     x, y = own["x"].copy(), own["y"].copy()
+    x[np.isin(own["time_s"], carried)] = np.nan
     away = np.flatnonzero(np.diff(own["tick"]) > 1)
     x[away], y[away] = np.nan, np.nan
     axes.plot(x, y, color=colour, linewidth=1.3, alpha=0.75, zorder=3, solid_capstyle="round")
@@ -210,7 +218,9 @@ def _draw_leaders(
         )  # fmt: skip
 
 
-def _legend(log: Log, gone: list[LastSeen], colours: dict[int, str]) -> list[Line2D]:
+def _legend(
+    log: Log, gone: list[LastSeen], faults: list[FaultSection], colours: dict[int, str]
+) -> list[Line2D]:
     outcomes = {one.robot: f"{printable(one.why, 60)}, {one.at_s:.0f} s" for one in gone}
     if log.summary is not None:
         lost = {
@@ -236,9 +246,9 @@ def _legend(log: Log, gone: list[LastSeen], colours: dict[int, str]) -> list[Lin
             marker="x",
             markersize=5,
             color=BAD,
-            label=fill(f"{f.at_s:g} s: {describe_fault(f)}", 30),
+            label=fill(f"{f.at_s:g} s: {fault_in_words(f)}", 30),
         )
-        for f in log.scenario.faults
+        for f in faults
     ]
     return handles
 

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import TypeAlias
 
 from onehop.contracts.arrays import Ranges
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.team import Status
 from onehop.contracts.values import Value, Wire
@@ -157,10 +158,11 @@ class Contact(Value, frozen=True):
 
 
 class Cut(Value, frozen=True):
-    """No frame passes between a robot of side_a and a robot of side_b, either way."""
+    """No frame passes from a robot of side_a to one of side_b, nor back unless it is one_way."""
 
     side_a: tuple[int, ...]
     side_b: tuple[int, ...]
+    one_way: bool = False
 
 
 class Jam(Value, frozen=True):
@@ -172,11 +174,28 @@ class Jam(Value, frozen=True):
     noise_dbm: float
 
 
+class Slow(Value, frozen=True):
+    """A robot whose actions take effect late: that of tick k at tick k + delay_ticks."""
+
+    robot: int
+    delay_ticks: int
+
+
+class Corruption(Value, frozen=True):
+    """Payloads that these robots receive are altered with this probability, each by itself."""
+
+    robots: tuple[int, ...]
+    probability: float
+
+
 class Truth(Wire, frozen=True):
     """Ground truth of tick k (key truth): who is where, what is broken, what was offered to the air.
 
     Everything the radio needs for the interval that ends at time_ns is in here, so that radio and
     world can never disagree about who was present. Tuples are sorted by robot id.
+    faults: those that begin with this tick, by script or by hand, in the order in which they were
+    carried out. stopped: present robots whose processes are stopped: without observation, inbox and
+    action. blind: robots whose lasers see nothing. slow, corruptions: in force, as are cuts and jams.
     """
 
     tick: int
@@ -187,6 +206,18 @@ class Truth(Wire, frozen=True):
     jams: tuple[Jam, ...]
     contacts: tuple[Contact, ...]
     departures: tuple[Departure, ...]
+    faults: tuple[FaultSection, ...] = ()
+    stopped: tuple[int, ...] = ()
+    blind: tuple[int, ...] = ()
+    slow: tuple[Slow, ...] = ()
+    corruptions: tuple[Corruption, ...] = ()
+
+
+def running(truth: Truth) -> list[Presence]:
+    """The robots that have an observation, an inbox and an action at this tick."""
+    if not truth.stopped:
+        return list(truth.present)
+    return [one for one in truth.present if one.robot not in truth.stopped]
 
 
 class DeliveryStatus(StrEnum):
@@ -196,13 +227,16 @@ class DeliveryStatus(StrEnum):
     COLLISION: would have been received, had no other frame overlapped its preamble or its bits.
     RECEIVER_BUSY: strong enough, but its receiver was locked on another frame or transmitted itself; or
     it was an RTS, and its receiver had to stay silent, because others had reserved the medium.
-    NO_ROUTE, QUEUE_FULL: at the robot that held it. EXPIRED: it waited there, for a route or for the
-    medium, until it was of no use any more. RECEIVER_GONE: its destination is not in the mission
-    any more, or came back as another process, whatever else failed. RELAY_GONE: the same of a robot on
-    its way, which held it or was to take it next; SENDER_GONE: of its source, which still held it.
+    CORRUPTED: it arrived, with other bytes than were sent, and is of no use to its receiver.
+    NO_ROUTE, QUEUE_FULL: at the robot that held it, or in the NIC of a receiver that is stopped.
+    EXPIRED: it waited there, for a route or for the medium, until it was of no use any more.
+    RECEIVER_GONE: its destination is not in the mission any more, or came back as another process,
+    whatever else failed. RELAY_GONE: the same of a robot on its way, which held it or was to take it
+    next; SENDER_GONE: of its source, which still held it.
     """
 
     DELIVERED = "delivered"
+    CORRUPTED = "corrupted"
     BELOW_THRESHOLD = "below threshold"
     BIT_ERRORS = "bit errors"
     COLLISION = "collision"
@@ -221,7 +255,7 @@ class Verdict(Value, frozen=True):
     message: sequence number, unique per source. receiver: who got it or should have (a broadcast has
     one verdict for each robot present). path: source to last holder, both included.
     attempts: of each hop of the path. Times in ns: offered by the robot, service begun by its link
-    layer, arrival (-1 when lost). discovery_ns, queueing_ns: parts of the delay.
+    layer, arrival (-1 when it never came). discovery_ns, queueing_ns: parts of the delay.
     snr_db, bit_error_rate: of the last attempt of the last hop.
     """
 
@@ -313,6 +347,25 @@ class Death(Wire, frozen=True):
     name: str
     incarnation: int
     account: str
+
+
+class FaultOrder(Wire, frozen=True):
+    """Injector to world (key fault): carry out a fault with the next tick.
+
+    number: of this order, by which its answer is known; an order that is repeated counts once.
+    """
+
+    number: int
+    fault: FaultSection
+
+
+class FaultAnswer(Wire, frozen=True):
+    """World to injector (key answer). tick: whose truth shows the fault; refusal: why none does."""
+
+    number: int
+    tick: int
+    refusal: str
+    fault: FaultSection
 
 
 class RobotProgress(Value, frozen=True):

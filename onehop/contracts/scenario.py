@@ -9,12 +9,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Annotated
 
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.problems import Problem
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.ranges import Range, out_of_range
 from onehop.contracts.sections import (
     ClockSection,
-    FaultSection,
     GainsSection,
     GoalSection,
     MapSection,

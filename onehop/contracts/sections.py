@@ -1,4 +1,4 @@
-"""The sections of a scenario but for the radio: values, defaults with units and source, conditions."""
+"""The sections of a scenario but for radio and faults: values, defaults, units, source, conditions."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -217,29 +217,3 @@ class ClockSection:
     @property
     def period_ns(self) -> int:
         return self.period_ms * 1_000_000
-
-
-@dataclass(frozen=True, slots=True)
-class FaultSection:
-    """One scripted fault, carried out at the first tick at or after at_s.
-
-    kill robots; restart robots; hold robots for duration_s (they stand still); cut robots from
-    `others` (empty: from all the rest) for duration_s; jam a disc x, y, radius with noise_dbm for
-    duration_s. A duration of 0 lasts to the end, or to the next `heal`.
-    """
-
-    kind: Literal["kill", "restart", "hold", "cut", "jam", "heal"]
-    at_s: Seconds
-    robots: tuple[RobotId, ...] = ()
-    others: tuple[RobotId, ...] = ()
-    duration_s: Seconds = 0.0
-    x: Coordinate = 0.0
-    y: Coordinate = 0.0
-    radius: Annotated[float, Range(0.0, 1e6)] = 0.0
-    noise_dbm: Annotated[float, Range(-200.0, 100.0)] = -60.0
-
-    def problems(self) -> Iterator[Problem]:
-        if self.kind in ("kill", "restart", "hold", "cut") and not self.robots:
-            yield Problem("robots", f"{self.kind} of nobody", "name at least one robot")
-        if self.kind == "jam" and not self.radius > 0:
-            yield Problem("radius", "a jam without extent", "radius of the jammed disc [m]")

@@ -7,6 +7,9 @@ prefix, so that missions on one machine never hear each other.
 
 WORLD, RADIO, RECORDER, OPERATOR = "world", "radio", "recorder", "operator"
 
+INJECTOR = "injector"
+"""Who orders faults by hand (`onehop fault`): it may say nothing else."""
+
 
 def robot_name(robot: int | str) -> str:
     """Name of a robot's process, liveliness token and identity: robot-3."""
@@ -38,7 +41,20 @@ PART = "part"
 """To or from a robot: the beginning of a message that is longer than its link carries."""
 
 KILL = "kill"
-"""World to robot: a scripted kill, which the robot's process carries out on itself."""
+"""World to robot: a kill by a fault, which the robot's process carries out on itself; world to operator:
+the same of a process that is stopped."""
+
+STOP = "stop"
+"""World to robot: you will be stopped; then world to operator: stop this robot's process (SIGSTOP)."""
+
+CONTINUE = "continue"
+"""World to operator: let the process of this robot go on (SIGCONT)."""
+
+WAKE = "wake"
+"""World to robot: say that you are awake."""
+
+AWAKE = "awake"
+"""Robot to world: the answer to either."""
 
 CARRIED = "carried"
 """Radio to world: the inboxes of tick k of every present robot, and the record of the tick."""
@@ -66,6 +82,15 @@ DIED = "died"
 
 RESTART = "restart"
 """World to operator: start the process of this robot again."""
+
+FAULT = "fault"
+"""Injector to world: an order of a fault."""
+
+ANSWER = "answer"
+"""World to injector: at which tick it took effect, or why it is refused."""
+
+TOLD = "told"
+"""World to operator: a line for people."""
 
 DIGEST = "digest"
 """Recorder to operator: the digest of the finished log."""

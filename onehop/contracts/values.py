@@ -3,7 +3,8 @@
 import msgspec
 
 WIRE_VERSION = 3
-"""Schema version that every wire message starts with; any other is refused by name."""
+"""Schema version that every wire message starts with; any other is refused by name. 3: messages have a
+lifetime, truths tell of every fault that begins, payloads of the team end in a checksum."""
 
 
 class Value(msgspec.Struct, frozen=True, forbid_unknown_fields=True):

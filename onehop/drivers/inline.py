@@ -5,7 +5,7 @@ from collections.abc import Callable
 from onehop.contracts import topics
 from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.briefings import radio_briefing, robot_briefing
-from onehop.contracts.messages import Action, Outcome, percept
+from onehop.contracts.messages import Action, Outcome, percept, running
 from onehop.maps.map_file import load_map
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
@@ -32,7 +32,7 @@ def run(bundle: Bundle, journal: Journal | None, watch: Watcher | None = None) -
         observations = world.observe()
         actions: dict[int, Action] = {}
         fenced: dict[int, str] = {}
-        for presence in truth.present:
+        for presence in running(truth):
             me = presence.robot, presence.incarnation
             if me not in robots:
                 robots[me] = Robot(robot_briefing(scenario, *me))

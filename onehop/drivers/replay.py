@@ -250,17 +250,20 @@ def _radio(scenario: Scenario, walls: WallMap) -> Player:
 
 
 class _WorldPlayer:
-    """The world, with the deaths that no script foresaw taken from the recorded truth."""
+    """The world, with the deaths and faults that no script foresaw taken from the recorded truth."""
 
     def __init__(self, scenario: Scenario, walls: WallMap) -> None:
         self._world = World(scenario, walls)
         self._limits = ActionLimits(scenario.team.robots)
+        self._actions: dict[int, Action] | None = None
 
     def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         truth = _value(Truth, tick, topics.TRUTH)
         if truth is None:
             return
         world = self._world
+        if self._actions is not None:
+            world.advance(self._actions, truth.faults)
         present = {presence.robot for presence in truth.present}
         for departure in truth.departures:
             if departure.robot not in present:
@@ -278,4 +281,4 @@ class _WorldPlayer:
                     continue
                 if self._limits.breach(said, tick.tick, said.incarnation) is None:
                     actions[int(robot)] = said
-        world.advance(actions)
+        self._actions = actions

@@ -2,6 +2,7 @@
 
 import contextlib
 import math
+import os
 import time
 import uuid
 from collections.abc import Callable, Sequence
@@ -14,6 +15,7 @@ from onehop.contracts.errors import InputError, MissionError
 from onehop.contracts.messages import Progress
 from onehop.mission.operator import LOST_WORD, STOPPED, Ending, OperatorSession, aborted, ending_by_death
 from onehop.mission.processes import ProcessGroup, free_endpoint
+from onehop.mission.rendezvous import Rendezvous, published
 from onehop.mission.stops import StopRequest
 from onehop.node.bus import LEASE_MS, Bus, open_client
 from onehop.wire.output_folder import LOG
@@ -116,7 +118,9 @@ class _Launch:
         bus = self._connect(group, mission, endpoint)
         if not isinstance(bus, Bus):
             return bus
-        with bus:
+        password = group.password(topics.INJECTOR)
+        way_in = Rendezvous(mission, endpoint, password, os.getpid())
+        with bus, published(self._plan.out, way_in):
             ending = OperatorSession(group, bus, self._stop, self._show, self._tell).until_end()
             leave_s = 0.0 if ending.outcome.outcome == "aborted" else LEAVE_S
             group.end(leave_s)  # while the router can answer
@@ -146,7 +150,7 @@ class _Launch:
                 return aborted(LOST_WORD, 0)
             with contextlib.suppress(MissionError):
                 return open_client(
-                    mission, endpoint, topics.OPERATOR, group.operator_password, CONNECT_TRY_MS
+                    mission, endpoint, topics.OPERATOR, group.password(topics.OPERATOR), CONNECT_TRY_MS
                 )
             if now > deadline:
                 raise MissionError(f"the world process has not opened the bus within {CONNECT_S:g} s")

@@ -1,6 +1,7 @@
 """The launcher on the bus of a running mission: it shows, restarts, tells of deaths, and stops."""
 
 import math
+import signal
 import time
 from collections.abc import Callable
 from typing import NamedTuple
@@ -24,6 +25,13 @@ DIGEST_S = 30.0
 
 STOP_S = 10.0
 """How long the world may take to end the mission when it is told to [s]."""
+
+SIGNALS = {
+    topics.STOP: signal.SIGSTOP,
+    topics.CONTINUE: signal.SIGCONT,
+    topics.KILL: signal.SIGKILL,
+}
+"""What the world may order for the process of a robot."""
 
 STOPPED = "stopped by the operator"
 """Reason of a mission whose launcher was asked to end."""
@@ -127,8 +135,12 @@ class OperatorSession:
             progress = decode(Progress, data)
             self._tick = progress.tick
             self._show(progress)
+        elif what == topics.TOLD:
+            self._tell(data.decode())
         elif what == topics.RESTART:
             self._group.start_robot(int(data))
+        elif what in SIGNALS:
+            self._group.send(topics.robot_name(int(data)), SIGNALS[what])
         elif what == topics.END and data:
             self._end, self._end_s = decode(End, data), time.monotonic()
         elif what == topics.DIGEST:

@@ -74,7 +74,8 @@ class ProcessGroup:
         self._endpoint = endpoint
         self._mission = mission
         self._words = words
-        names = [topics.RADIO, topics.RECORDER, topics.OPERATOR, *map(topics.robot_name, robots)]
+        others = (topics.RADIO, topics.RECORDER, topics.OPERATOR, topics.INJECTOR)
+        names = [*others, *map(topics.robot_name, robots)]
         require_descriptors(len(names))
         self._passwords = make_credentials(names)
         self._lifeline, self._keep_open = os.pipe()
@@ -93,9 +94,9 @@ class ProcessGroup:
         if not self.said_something:
             shutil.rmtree(self._words, ignore_errors=True)
 
-    @property
-    def operator_password(self) -> str:
-        return self._passwords[topics.OPERATOR]
+    def password(self, name: str) -> str:
+        """What the bus knows a process by."""
+        return self._passwords[name]
 
     @property
     def said_something(self) -> bool:
@@ -144,6 +145,10 @@ class ProcessGroup:
         before = self._children.get(name)
         self._children[name] = _Child(process, before.incarnation + 1 if before else 0)
         self.processes.append(Process(name, process.pid))
+
+    def send(self, name: str, number: signal.Signals) -> None:
+        """Send a signal to a child, if it still runs."""
+        self._children[name].process.send_signal(number)
 
     def exit_status(self, name: str) -> int | None:
         """Exit status of a child, negative for a signal, None while it runs."""

@@ -12,16 +12,26 @@ from onehop.contracts.messages import (
     Reception,
     Truth,
     Verdict,
+    running,
 )
 from radio_proxy.core.addresses import BROADCAST, RobotId
+from radio_proxy.core.corruption import Corrupter
 from radio_proxy.core.data_message import DataMessage, DataPacket
+
+BUFFER_BYTES = 212_992
+"""What waits at most for a robot that is stopped [B]: Linux's net.core.rmem_default."""
 
 
 class Deliveries:
-    """Verdicts and receptions since the last tick. present: robots whose NICs are up, sorted."""
+    """Verdicts and receptions since the last tick. present: robots whose NICs are up, sorted.
 
-    def __init__(self) -> None:
+    stopped: those of them that read nothing: what they receive waits until they go on.
+    """
+
+    def __init__(self, corrupter: Corrupter) -> None:
+        self._corrupter = corrupter
         self.present: tuple[RobotId, ...] = ()
+        self.stopped: tuple[int, ...] = ()
         self._verdicts: list[Verdict] = []
         self._receptions: list[tuple[int, int, int, RobotId, Reception]] = []
         self._control_bytes: dict[str, int] = {}
@@ -29,20 +39,25 @@ class Deliveries:
     def carriage(self, truth: Truth, control_bytes: dict[str, int]) -> Carriage:
         """What the radio says at the end of a tick; control_bytes: what routing has cost so far [B]."""
         tick, time_ns = truth.tick, truth.time_ns
-        inboxes = {presence.robot: Inbox(tick, time_ns, ()) for presence in truth.present}
+        inboxes = {presence.robot: Inbox(tick, time_ns, ()) for presence in running(truth)}
         if self._receptions:
             self._receptions.sort(key=lambda reception: reception[:4])
             received: dict[RobotId, list[Reception]] = {}
             for _, _, _, robot, reception in self._receptions:
                 received.setdefault(robot, []).append(reception)
-            self._receptions = []
+            self._receptions = [one for one in self._receptions if one[3] in self.stopped]
             for robot in sorted(received):
-                inboxes[robot] = Inbox(tick, time_ns, tuple(received[robot]))
+                if robot not in self.stopped:
+                    inboxes[robot] = Inbox(tick, time_ns, tuple(received[robot]))
         verdicts = tuple(self._verdicts)
         self._verdicts = []
         if control_bytes != self._control_bytes:
             self._control_bytes = dict(sorted(control_bytes.items()))
         return Carriage(inboxes, RadioRecord(tick, time_ns, verdicts, self._control_bytes))
+
+    def forget(self, robot: RobotId) -> None:
+        """A robot has left, or is another process: what waits for it is lost."""
+        self._receptions = [one for one in self._receptions if one[3] != robot]
 
     def deliver(self, data: DataPacket, now: int) -> None:
         """A copy reached its destination; a second one is dropped."""
@@ -83,13 +98,19 @@ class Deliveries:
 
     def record(self, data: DataPacket, receiver: RobotId, status: DeliveryStatus, arrival: int) -> None:
         """The verdict on a message and one receiver; arrival: -1 when it was lost [ns]."""
-        message = data.message
+        message, payload = data.message, data.message.payload
+        if status is DeliveryStatus.DELIVERED:
+            payload = self._corrupter.received(receiver, payload)
+            if payload != message.payload:
+                status = DeliveryStatus.CORRUPTED
+            if receiver in self.stopped and not self._has_room(receiver, message.msdu_bytes):
+                status, arrival = DeliveryStatus.QUEUE_FULL, -1
         verdict = message.verdict(data, receiver, status, arrival)
         self._verdicts.append(verdict)
-        if status is DeliveryStatus.DELIVERED:
+        if status in (DeliveryStatus.DELIVERED, DeliveryStatus.CORRUPTED):
             reception = Reception(
                 source=message.source,
-                payload=message.payload,
+                payload=payload,
                 service_start_ns=verdict.service_start_ns,
                 arrival_ns=arrival,
                 hops=len(data.path) - 1,
@@ -99,3 +120,7 @@ class Deliveries:
                 msdu_bytes=message.msdu_bytes,
             )
             self._receptions.append((arrival, message.source, message.number, receiver, reception))
+
+    def _has_room(self, robot: RobotId, msdu_bytes: int) -> bool:
+        waiting = sum(one[4].msdu_bytes for one in self._receptions if one[3] == robot)
+        return waiting + msdu_bytes <= BUFFER_BYTES

@@ -228,7 +228,7 @@ class Propagation:
 
     def _apply_cuts(self, sender: StationIndex, row: list[float]) -> None:
         for cut in self._cuts:
-            for near, far in ((cut.side_a, cut.side_b), (cut.side_b, cut.side_a)):
+            for near, far in ((cut.side_a, cut.side_b), (cut.side_b, cut.side_a))[: 2 - cut.one_way]:
                 if sender in (self._index.get(robot) for robot in near):
                     for robot in far:
                         index = self._index.get(robot, sender)

@@ -16,6 +16,7 @@ from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.randomness import generator
 from onehop.contracts.units import nanoseconds
 from radio_proxy.core.addresses import BROADCAST, RobotId
+from radio_proxy.core.corruption import Corrupter
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
@@ -49,7 +50,8 @@ class Radio:
             shadowing(budget, seed),
             fast_fading(section, seed),
         )
-        self._deliveries = Deliveries()
+        self._corrupter = Corrupter(generator(briefing.seed, "faults"))
+        self._deliveries = Deliveries(self._corrupter)
         self._link = LinkLayer(robots, section, self._propagation, self._draws, self._deliveries)
         self._events = self._link.events
         self._nics: dict[RobotId, tuple[Nic, Router]] = {}
@@ -64,6 +66,8 @@ class Radio:
         self._update_nics(truth, start)
         self._propagation.update(truth.present, truth.cuts, truth.jams, (start, truth.time_ns))
         self._link.on_placed(start)
+        self._corrupter.in_force = truth.corruptions
+        self._deliveries.stopped = truth.stopped
         self._requests = truth.transmit_requests
         talking = [request for request in truth.transmit_requests if request.outbox]
         if talking:
@@ -86,6 +90,7 @@ class Radio:
             for data in router.abandon():
                 self._deliveries.drop_with_holder(data, nic.robot)
         for robot in left:
+            self._deliveries.forget(robot)
             for data in self._link.detach(robot):
                 self._deliveries.drop_with_holder(data, robot)
         for presence in truth.present:

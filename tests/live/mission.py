@@ -9,6 +9,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from onehop.checking import judge
+from onehop.drivers.replay import replay
+from onehop.wire.log_reader import LogFile
 from tests.onehop.scenes import FIELD
 
 DEADLINE_S = 120.0
@@ -99,6 +102,14 @@ class Mission:
             assert time.monotonic() < deadline
             assert self.child.poll() is None
             time.sleep(0.005)
+
+
+def proven(path: Path) -> LogFile:
+    """The log of a mission that happens again, tick by tick, and in which every promise held."""
+    log = LogFile(path)
+    assert replay(log).divergences == 0
+    assert judge(log).violations == ()
+    return log
 
 
 def gone(pids: list[int]) -> bool:

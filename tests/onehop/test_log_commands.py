@@ -11,6 +11,7 @@ import pytest
 from onehop.cli import main
 from onehop.wire.log_reader import LogFile
 from onehop.wire.log_writer import LogWriter
+from tests.onehop.forgery import Forgery
 from tests.onehop.log_forms import Form, chunks, ticks_of, write_form
 from tests.onehop.scenes import field, log_of
 
@@ -246,3 +247,57 @@ def test_the_json_of_a_divergence_is_json_whatever_was_said(
         assert answer.status == 1
         first = json.loads(answer.out, parse_constant=pytest.fail)["first"]
         assert "nan" in (first.get("recorded"), first.get("a"))
+
+
+def test_check_says_what_it_counted_and_what_was_never_exercised(onehop: Any, recorded: Path) -> None:
+    answer = onehop("check", recorded)
+    assert answer.status == 0
+    assert answer.out.startswith("80 ticks (4.00 s) of 4 robots, profile team")
+    assert "motion           held        316 ticks of robots" in answer.out
+    assert "re-election      not asked   never exercised: no leader left" in answer.out
+    assert answer.err == ""
+
+
+def test_check_tells_a_script_every_promised_key(onehop: Any, recorded: Path) -> None:
+    answer = onehop("check", recorded, "--json", "--only", "median", "--only", "silence")
+    assert answer.status == 0
+    assert answer.json["violations"] == []
+    assert set(answer.json["checked"]) == {"median", "silence"}
+    assert list(answer.json["unexercised"]) == ["silence"]
+
+
+def test_check_names_a_violation_with_tick_robots_and_message(
+    onehop: Any, recorded: Path, tmp_path: Path
+) -> None:
+    forgery, path = Forgery(recorded), tmp_path / "forged.mcap"
+    forgery.say(range(50, 60), 4, shape="hexagon")
+    forgery.write(path)
+    answer = onehop("check", path)
+    assert answer.status == 1
+    assert "shape            BROKEN 1x" in answer.out
+    assert "shape: tick 50 (2.50 s), robots 4: robot 4 drives as hexagon" in answer.out
+    assert "tick 50 /wire/out/4: setup, epoch 0, leader 2 of 1 2 3 4, hexagon" in answer.out
+    told = onehop("check", path, "--json").json["violations"]
+    assert [(one["invariant"], one["tick"], one["robots"]) for one in told] == [("shape", 50, [4])]
+    assert told[0]["evidence"][0]["topic"] == "/wire/out/4"
+
+
+def test_check_of_a_torn_log_warns_and_judges_what_is_there(onehop: Any, torn: Path) -> None:
+    answer = onehop("check", torn)
+    assert answer.status == 0
+    assert "is torn" in answer.err
+    assert "digest           not asked" in answer.out
+
+
+def test_check_of_a_log_that_lacks_ticks_is_1(onehop: Any, short: Path) -> None:
+    answer = onehop("check", short)
+    assert answer.status == 1
+    assert "complete: tick" in answer.out
+    assert "missing" in answer.out
+
+
+def test_check_of_what_is_no_invariant_is_2_in_one_line(onehop: Any, recorded: Path) -> None:
+    answer = onehop("check", recorded, "--only", "luck")
+    assert answer.status == 2
+    assert answer.err.count("\n") == 1
+    assert "no-collision" in answer.err

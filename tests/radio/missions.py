@@ -2,7 +2,16 @@
 
 from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.messages import Cut, Jam, Presence, Transmission, TransmitRequest, Truth, Verdict
+from onehop.contracts.messages import (
+    Corruption,
+    Cut,
+    Jam,
+    Presence,
+    Transmission,
+    TransmitRequest,
+    Truth,
+    Verdict,
+)
 from onehop.contracts.radio_section import RadioSection
 from radio_proxy.core.radio import Radio
 
@@ -34,6 +43,8 @@ class Mission:
         self.remaining = dict.fromkeys(places, 0.0)
         self.cuts: tuple[Cut, ...] = ()
         self.jams: tuple[Jam, ...] = ()
+        self.corruptions: tuple[Corruption, ...] = ()
+        self.stopped: tuple[int, ...] = ()
         self.radio = Radio(RadioBriefing(seed, PERIOD, tuple(sorted(places)), section, ()))
         self.tick = 0
         self.verdicts: list[Verdict] = []
@@ -59,12 +70,14 @@ class Mission:
             jams=self.jams,
             contacts=(),
             departures=(),
+            stopped=self.stopped,
+            corruptions=self.corruptions,
         )
 
     def step(self, outboxes: Outboxes | None = None) -> tuple[Verdict, ...]:
         """One tick: the outboxes are handed over at its start; its verdicts."""
         carriage = self.radio.carry(self.truth(outboxes or {}))
-        assert sorted(carriage.inboxes) == sorted(self.places)
+        assert sorted(carriage.inboxes) == sorted(set(self.places).difference(self.stopped))
         self.inboxes = carriage.inboxes
         self.control_bytes = carriage.record.control_bytes
         self.verdicts += carriage.record.verdicts

@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.geometry import Twist
 from onehop.contracts.messages import Action, Contact, Departure, Note, Transmission
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import (  # fmt: skip
     ClockSection,
-    FaultSection,
     GoalSection,
     MapSection,
     StartSection,
@@ -195,17 +195,17 @@ def test_what_a_robot_offered_before_it_was_restarted_is_lost() -> None:
 def test_a_scripted_kill_shows_in_the_first_tick_at_or_after_its_time() -> None:
     ground = world(FaultSection("kill", at_s=0.12, robots=(3, 1)))
     for tick in range(3):
-        assert ground.due_faults() == ()
+        assert ground.truth().faults == ()
         assert present(ground) == [1, 2, 3], tick
         ground.advance({})
-    assert [fault.kind for fault in ground.due_faults()] == ["kill"]
+    assert [fault.kind for fault in ground.truth().faults] == ["kill"]
     assert present(ground) == [2]
     assert ground.truth().departures == (
-        Departure(1, "killed (scenario)"),
-        Departure(3, "killed (scenario)"),
+        Departure(1, "killed by a fault"),
+        Departure(3, "killed by a fault"),
     )
     ground.advance({})
-    assert ground.due_faults() == ()
+    assert ground.truth().faults == ()
 
 
 def test_a_fault_at_zero_is_in_the_first_truth() -> None:
@@ -221,7 +221,7 @@ def test_a_scripted_restart_readmits_or_replaces() -> None:
     ground.advance({})
     truth = ground.truth()
     assert [(one.robot, one.incarnation) for one in truth.present] == [(1, 1), (2, 1), (3, 0)]
-    assert truth.departures == (Departure(1, "restarted (scenario)"),)
+    assert truth.departures == (Departure(1, "restarted by a fault"),)
 
 
 def test_a_held_robot_does_not_move_and_is_shown_as_held() -> None:

@@ -33,11 +33,11 @@ def start_poses(scenario: Scenario, walls: WallMap) -> FloatArray:
     Raises ScenarioError when start, goal or a pose is not free, or when there is no room for the team.
     """
     inflation = scenario.planner.inflation
-    _require_free(walls, "goal.x, goal.y", scenario.goal.x, scenario.goal.y, inflation)
+    require_free(walls, "goal.x, goal.y", scenario.goal.x, scenario.goal.y, inflation)
     if scenario.start.poses:
         return _given_poses(scenario, walls)
     start = scenario.start
-    _require_free(walls, "start.x, start.y", start.x, start.y, inflation)
+    require_free(walls, "start.x, start.y", start.x, start.y, inflation)
     count = len(scenario.team.robots)
     apart = 2.0 * inflation + _GAP
     random = generator(scenario.seed, "world/placement")
@@ -92,7 +92,7 @@ def _given_poses(scenario: Scenario, walls: WallMap) -> FloatArray:
     poses = np.array(scenario.start.poses, dtype=np.float64)
     poses[:, 2] = -np.remainder(np.pi - np.radians(poses[:, 2]), 2.0 * np.pi) + np.pi
     for number, (x, y, _) in enumerate(poses):
-        _require_free(walls, f"start.poses[{number}]", x, y, scenario.planner.inflation)
+        require_free(walls, f"start.poses[{number}]", x, y, scenario.planner.inflation)
         for other in range(number):
             distance = math.hypot(x - poses[other, 0], y - poses[other, 1])
             if distance < 2.0 * scenario.robot.radius:
@@ -104,7 +104,7 @@ def _given_poses(scenario: Scenario, walls: WallMap) -> FloatArray:
     return poses
 
 
-def _require_free(walls: WallMap, where: str, x: float, y: float, inflation: float) -> None:
+def require_free(walls: WallMap, where: str, x: float, y: float, inflation: float) -> None:
     if walls.is_free(x, y, inflation):
         return
     xmin, ymin, xmax, ymax = walls.bounds

@@ -29,8 +29,8 @@ _MARGIN = 0.1
 class TickSummary(NamedTuple):
     """What the referee looks at after a tick.
 
-    statuses: the last word of those who have said any. waiting: robots held by a fault that will end by
-    itself, whose standing still means nothing. collisions: contacts so far.
+    statuses: the last word of those who have said any. waiting: robots held or stopped by a fault that
+    will end by itself, whose standing still means nothing. collisions: contacts so far.
     """
 
     ticks: int
@@ -75,9 +75,9 @@ class Referee:
         self._departed.pop(robot, None)
 
     def on_notes(self, robot: int, notes: tuple[Note, ...]) -> None:
-        """Remember whom a leader gave up and why, and the last note that is not about a mode."""
+        """Remember whom a leader gave up and why, and the last note about the robot itself."""
         for note in notes:
-            if note.kind != "mode":
+            if note.kind not in ("mode", "garbled"):
                 self._last_notes[robot] = note.kind.replace("_", " ")
             if note.kind == "lost_follower":
                 self._on_given_up(robot, note)

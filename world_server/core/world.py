@@ -1,15 +1,17 @@
 """The world of one mission, tick by tick: who is where, what each sees, what is broken, how it ends.
 
 Every driver calls, in this order and once a tick: truth(), observe(), advance(). Faults, departures and
-returns take effect in the next truth(). The body of a robot whose process is gone stays where it was:
+returns take effect in the next truth(). A robot that is stopped takes part in none of them, and its
+body and its NIC stay. The body of a robot whose process is gone stays where it was:
 others see it and can touch it, and a restarted process wakes up in it.
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import (
     Action,
@@ -20,20 +22,24 @@ from onehop.contracts.messages import (
     Presence,
     TransmitRequest,
     Truth,
+    running,
 )
 from onehop.contracts.scenario import Scenario
-from onehop.contracts.sections import FaultSection
 from onehop.contracts.team import Status
 from onehop.maps.walls import WallMap
 from world_server.core.contacts import ContactDetector
 from world_server.core.faults import Faults
+from world_server.core.kidnapping import landing, require_free_targets
 from world_server.core.laser import Laser
+from world_server.core.late_actions import LateActions
+from world_server.core.mission_events import EventDetector
 from world_server.core.motion import Motion
+from world_server.core.orders import Judge
 from world_server.core.placement import start_poses
 from world_server.core.referee import Referee, TickSummary
 
-KILLED = "killed (scenario)"
-RESTARTED = "restarted (scenario)"
+KILLED = "killed by a fault"
+RESTARTED = "restarted by a fault"
 
 _AT_REST = (0.0, 0.0)
 """v [m/s] and w [rad/s] of a robot that was told nothing, or is held."""
@@ -48,11 +54,16 @@ class World:
         self._body = scenario.robot
         self._period_ns = scenario.clock.period_ns
         self._poses = start_poses(scenario, walls)
+        self._walls, self._inflation = walls, scenario.planner.inflation
+        require_free_targets(scenario.faults, walls, self._inflation)
+        self._judge = Judge(self._robots, walls, self._inflation)
         self._twists = np.zeros((len(self._robots), 2))
         self._laser = Laser(walls, scenario.robot)
         self._motion = Motion(walls, scenario.robot, self._period_ns)
         self._contact_detector = ContactDetector(self._robots, self._motion, scenario.robot.radius)
         self._faults = Faults(scenario.faults, self._robots)
+        self._late_actions = LateActions()
+        self._events = EventDetector()
         self._referee = Referee(scenario)
         self._incarnation = dict.fromkeys(self._robots, 0)
         self._present = dict.fromkeys(self._robots, True)
@@ -72,14 +83,6 @@ class World:
         """Simulated time at the current tick [ns]."""
         return self.tick * self._period_ns
 
-    def due_faults(self) -> tuple[FaultSection, ...]:
-        """Faults of the script that this tick's truth shows for the first time.
-
-        The world has already carried them out on itself; a driver with processes ends and starts those
-        that a kill or restart names before it lets this tick go on.
-        """
-        return self._due
-
     def truth(self) -> Truth:
         """Ground truth of this tick: the same value until advance()."""
         if self._truth is None:
@@ -95,36 +98,49 @@ class World:
                 jams=self._faults.jams,
                 contacts=self._contacts,
                 departures=tuple(sorted(self._departures, key=lambda gone: gone.robot)),
+                faults=self._begun,
+                stopped=self._present_among(self._faults.stopped),
+                blind=self._present_among(self._faults.blind),
+                slow=self._faults.slow,
+                corruptions=self._faults.corruptions,
             )
             self._departures = []
         return self._truth
 
     def observe(self) -> dict[int, Observation]:
-        """What each robot that this tick's truth calls present sees now, by id, ids ascending."""
+        """What each robot that runs at this tick sees now, by id, ids ascending."""
         truth = self.truth()
-        tick, time_ns = truth.tick, truth.time_ns
-        looking = np.array([self._row[one.robot] for one in truth.present], dtype=np.int32)
+        tick, time_ns, observers = truth.tick, truth.time_ns, running(truth)
+        looking = np.array([self._row[one.robot] for one in observers], dtype=np.int32)
         scans = self._laser.scans(self._poses, looking)
+        if truth.blind:
+            scans[[one.robot in truth.blind for one in observers]] = math.inf
         scans.flags.writeable = False
         return {
             one.robot: Observation(tick, time_ns, one.incarnation, one.pose, one.twist, scan)
-            for one, scan in zip(truth.present, scans, strict=True)
+            for one, scan in zip(observers, scans, strict=True)
         }
 
-    def advance(self, actions: Mapping[int, Action]) -> None:
+    def advance(self, actions: Mapping[int, Action], by_hand: Sequence[FaultSection] = ()) -> None:
         """Let one period pass. A present robot without an action stands still.
 
-        Actions of robots that are not present, or of an earlier incarnation, are ignored. Raises
-        ValueError for a twist that is not a number: a broken robot, not a state of the world.
+        by_hand: faults that begin with the next tick, beside those of the script. Actions of robots that
+        are not present or are stopped, or of an earlier incarnation, are ignored. Raises ValueError for
+        a twist that is not a number: a broken robot, not a state of the world.
         """
-        self._take_over(actions)
+        faults = self._faults
+        self._take_over(self._late_actions.effective(actions, self.tick, faults.delays, faults.stopped))
         touched = self._motion.advance(self._poses, self._twists)
         self._contacts = self._contact_detector.onsets(self._poses, touched)
         self._collisions += len(self._contacts)
         self.tick += 1
-        self._begin_tick()
+        self._begin_tick(by_hand)
         if self._outcome is None:
             self._outcome = self._referee.judge(self._tick_summary(), self._faults.will_restart)
+
+    def refusal(self, fault: FaultSection) -> str | None:
+        """Why a fault that is ordered by hand cannot be carried out; None if it can."""
+        return self._judge.refusal(fault, self.truth())
 
     def fence(self, robot: int, why: str) -> None:
         """Take a robot out of the mission, as of the next truth(): its process died or fell silent."""
@@ -150,22 +166,36 @@ class World:
         """The account of a mission that is broken off now."""
         return self._referee.close("aborted", reason, self._tick_summary())
 
-    def _begin_tick(self) -> None:
+    def _begin_tick(self, by_hand: Sequence[FaultSection] = ()) -> None:
         self._truth = self._present_now = None
         self._faults.expire(self.time_ns)
-        self._due = self._faults.due(self.time_ns)
-        for fault in self._due:
+        self._begun = self._faults.due(self.time_ns, by_hand)
+        for fault in self._begun:
+            self._faults.begin(fault, self.time_ns)
             self._carry_out(fault)
 
     def _carry_out(self, fault: FaultSection) -> None:
-        """Carry out what of a fault concerns who is present, as of the next truth()."""
-        if fault.kind == "kill":
-            for robot in sorted(fault.robots):
+        """Carry out what of a fault concerns who is present and where, as of the next truth()."""
+        for robot in fault.robots:
+            if fault.kind == "kill":
                 self.fence(robot, KILLED)
-        elif fault.kind == "restart":
-            for robot in sorted(fault.robots):
+            elif fault.kind == "restart":
                 self.fence(robot, RESTARTED)
                 self.admit(robot)
+            elif fault.kind == "kidnap":
+                self._kidnap(robot, fault)
+
+    def _kidnap(self, robot: int, fault: FaultSection) -> None:
+        """Put the body of a robot elsewhere, at rest."""
+        row = self._row[robot]
+        bodies = np.delete(self._poses[:, :2], row, axis=0)
+        apart = 2.0 * self._body.radius
+        self._poses[row] = landing(fault, self._walls, self._inflation, bodies, apart)
+        self._twists[row] = 0.0
+        self._present_now = None
+
+    def _present_among(self, robots: frozenset[int]) -> tuple[int, ...]:
+        return tuple(sorted(robot for robot in robots if self._present[robot])) if robots else ()
 
     def _forget(self, robot: int) -> None:
         """Drop what the last process of a robot said and did."""
@@ -173,6 +203,9 @@ class World:
         self._twists[self._row[robot]] = 0.0
         self._transmit_requests.pop(robot, None)
         self._statuses.pop(robot, None)
+        self._faults.forget(robot)
+        self._late_actions.forget(robot)
+        self._events.forget(robot)
 
     def _take_over(self, actions: Mapping[int, Action]) -> None:
         """Take over twists, transmit requests, statuses and notes of the robots that are present."""
@@ -184,6 +217,7 @@ class World:
             if (
                 action is None
                 or not self._present[robot]
+                or robot in self._faults.stopped
                 or action.incarnation != self._incarnation[robot]
             ):
                 continue
@@ -193,6 +227,8 @@ class World:
             self._statuses[robot] = action.status
             if action.notes:
                 self._referee.on_notes(robot, action.notes)
+            for event in self._events.on_action(robot, action):
+                self._faults.on_event(event, self.time_ns + self._period_ns)
             if robot not in held:
                 driven[row] = self._driven(robot, action.twist)
         self._twists[:] = driven
@@ -227,6 +263,6 @@ class World:
             self.time_ns,
             self._presences(),
             self._statuses,
-            self._faults.released,
+            self._faults.resting,
             self._collisions,
         )

@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 
 from onehop.analysis.report.election_rows import elections
 from onehop.analysis.report.report_data import ReportData
+from onehop.contracts.fault_section import fault_in_words, in_toml
 from onehop.contracts.messages import LeadershipTerm
-from onehop.contracts.printable import in_words
+from onehop.contracts.printable import in_words, printable
 from onehop.contracts.team import loss_in_words
 
 MOST_NOTES = 50
@@ -16,6 +17,12 @@ MOST_NOTES = 50
 
 MOST_HANDOVERS = 50
 """Changes of the leader that are told."""
+
+MOST_FAULTS = 200
+"""Faults that are told."""
+
+_LONGEST_FAULT = 400
+"""Characters of a fault that are shown."""
 
 _NAMED_LEADERS = 6
 """More leaders than this are only counted."""
@@ -40,10 +47,7 @@ def narrative(report: ReportData) -> list[NarrativeEvent]:
         *_losses_of_leaders(report, notes),
         *_handovers(report, notes),
         *_departures(report),
-        *(
-            NarrativeEvent(span.start_s, 2, _fault(span.what, span.end_s - span.start_s))
-            for span in report.faults
-        ),
+        *_faults(report),
         *_collisions(report),
         *_ending(report),
     ]
@@ -234,8 +238,11 @@ def _departures(report: ReportData) -> Iterator[NarrativeEvent]:
         yield NarrativeEvent(one.at_s, 2, f"Robot {one.robot}{part} leaves the mission: {one.why}.")
 
 
-def _fault(what: str, lasted_s: float) -> str:
-    return f"Fault: {what}, for {lasted_s:.0f} s."
+def _faults(report: ReportData) -> Iterator[NarrativeEvent]:
+    """Each fault as it began, with the line that repeats it in a scenario."""
+    for fault in report.begun[:MOST_FAULTS]:
+        words = f"Fault: {fault_in_words(fault)}. In a scenario: faults = [{in_toml(fault)}]"
+        yield NarrativeEvent(fault.at_s or 0.0, 2, printable(words, _LONGEST_FAULT))
 
 
 def _collisions(report: ReportData) -> Iterator[NarrativeEvent]:

@@ -12,6 +12,7 @@ from onehop.analysis.report.report_data import ReportData
 from onehop.contracts.messages import DeliveryStatus
 
 COLOURS = {
+    DeliveryStatus.CORRUPTED: "#F0A0C8",
     DeliveryStatus.BELOW_THRESHOLD: "#D55E00",
     DeliveryStatus.BIT_ERRORS: "#E69F00",
     DeliveryStatus.COLLISION: "#CC79A7",

@@ -6,13 +6,21 @@ from onehop.analysis.log import Log
 from onehop.analysis.message_traces import MessageTrace, join
 from onehop.analysis.palette import robot_colours
 from onehop.analysis.tables import Table
-from onehop.analysis.timeline import LastSeen, Span, departures, fault_spans, leadership
+from onehop.analysis.timeline import (
+    LastSeen,
+    Span,
+    begun_faults,
+    departures,
+    fault_spans,
+    leadership,
+)
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.messages import LeadershipTerm
 from onehop.wire.audit import audit
 
 _TABLES = (
     "poses", "status", "notes", "verdicts", "transmit_requests", "control", "contacts", "departures",
-    "cuts", "jams",
+    "cuts", "jams", "corruptions", "impaired", "faults",
 )  # fmt: skip
 
 
@@ -21,7 +29,8 @@ class ReportData:
     """One mission, taken apart.
 
     gone: everyone who left. terms: every leadership term. main_terms: of those, who led most of the
-    team. end_s: time of the last tick in the log [s]. flaws: why the log is not all that was said.
+    team. faults: those that lasted. begun: all faults, as they began. end_s: time of the last tick in
+    the log [s]. flaws: why the log is not all that was said.
     """
 
     log: Log
@@ -31,6 +40,7 @@ class ReportData:
     terms: list[LeadershipTerm]
     main_terms: list[LeadershipTerm]
     faults: list[Span]
+    begun: list[FaultSection]
     traces: list[MessageTrace]
     period_s: float
     end_s: float
@@ -66,6 +76,7 @@ def gather(log: Log) -> ReportData:
         terms=led.terms,
         main_terms=led.main,
         faults=fault_spans(tables, period_s),
+        begun=begun_faults(tables["faults"]),
         traces=list(join(tables["verdicts"], tables["transmit_requests"], log.period_ns)),
         period_s=period_s,
         end_s=float(poses["time_s"][-1]) if len(poses) else 0.0,

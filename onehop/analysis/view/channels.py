@@ -18,6 +18,7 @@ from onehop.analysis.view.schemas import schema_of
 from onehop.contracts import topics
 from onehop.contracts.beams import Beams
 from onehop.contracts.errors import DecodeError
+from onehop.contracts.fault_section import fault_in_words
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Action, Inbox, Note, Observation, Truth
 from onehop.contracts.printable import printable
@@ -185,13 +186,16 @@ class ViewerChannels:
         self._put("/links/points", tick, scene.cloud(stamp, scene.MAP, points.link_points(links)))
 
     def _add_events(self, tick: int, stamp: int, actions: dict[int, Action], truth: Truth) -> None:
+        for fault in truth.faults:
+            text = printable(f"fault: {fault_in_words(fault)}")
+            self._put("/events", tick, scene.event(stamp, topics.WORLD, text, TextLog.WARNING))
         for one in truth.departures:
             text = printable(f"gone, {one.why}")
-            self._put("/events", tick, scene.event(stamp, one.robot, text, TextLog.WARNING))
+            self._put("/events", tick, scene.event(stamp, robot_name(one.robot), text, TextLog.WARNING))
         for robot, action in sorted(actions.items()):
             for note in action.notes[:MOST_EVENTS]:
                 level = _LEVELS.get(note.kind, TextLog.INFO)
-                self._put("/events", tick, scene.event(stamp, robot, _text(note), level))
+                self._put("/events", tick, scene.event(stamp, robot_name(robot), _text(note), level))
 
 
 def _text(note: Note) -> str:

@@ -141,8 +141,8 @@ def link(stamp_ns: int, **numbers: float) -> Any:
     return message
 
 
-def event(stamp_ns: int, robot: int, text: str, level: int) -> Any:
-    """A line for the log panel."""
-    message = Log(message=f"{robot_name(robot)}: {text}", name=robot_name(robot), level=level)  # type: ignore[arg-type]
+def event(stamp_ns: int, name: str, text: str, level: int) -> Any:
+    """A line for the log panel. name: of the process that it is about."""
+    message = Log(message=f"{name}: {text}", name=name, level=level)  # type: ignore[arg-type]
     message.timestamp.FromNanoseconds(stamp_ns)
     return message

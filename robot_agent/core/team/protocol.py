@@ -58,6 +58,7 @@ class TeamProtocol:
         self.robot = briefing.robot
         self.rules = make_rules(briefing.team)
         self.counters = {"garbled": 0, "stale": 0, "foreign": 0}
+        self._garbled_from: set[int] = set()
         self._team = briefing.team
         period_ns = nanoseconds(briefing.team.next_period)
         self._outbox = Outbox(ActionLimits(briefing.team.robots), lifetime_ns=period_ns)
@@ -132,6 +133,9 @@ class TeamProtocol:
         """
         for reception in inbox:
             self._on_reception(now_ns, pose, in_position, reception)
+        if self._garbled_from:
+            self._outbox.note("garbled", robots=tuple(sorted(self._garbled_from)))
+            self._garbled_from.clear()
         part = self.state.part
         if isinstance(part, Following | Waiting) and part.leader.misses_next(now_ns):
             self.state.events.append(NextMissed())
@@ -141,6 +145,7 @@ class TeamProtocol:
             message = decode(reception.payload)
         except DecodeError:
             self.counters["garbled"] += 1
+            self._garbled_from.add(reception.source)
             return
         source = reception.source
         if source == self.robot or source not in self._known:

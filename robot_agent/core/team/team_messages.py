@@ -1,11 +1,13 @@
 """What robots of a team say to each other: schema version, encoding, strict decoding.
 
-One msgpack array a message: [schema, kind, fields...]. Nothing is coerced; whatever is not exactly one
-of these messages raises DecodeError, which the receiver counts and drops. Lengths are in centimetres as
-integers inside a trail and a lane only, so that a Next of a large team stays within one MSDU of 800 B.
+One msgpack array a message, [schema, kind, fields...], and a checksum over it: bytes may be altered past
+the checks of the link. Nothing is coerced; whatever is not exactly one of these messages raises
+DecodeError, which the receiver counts and drops. Lengths are in centimetres as integers inside a trail
+and a lane only, so that a Next of a large team stays within one MSDU of 800 B.
 """
 
 import math
+import zlib
 from collections.abc import Callable
 from dataclasses import dataclass
 from enum import StrEnum
@@ -18,8 +20,11 @@ from onehop.contracts.geometry import Pose
 from onehop.contracts.serial_numbers import LIMIT
 from robot_agent.core.team.roster import Roster
 
-SCHEMA = 2
+SCHEMA = 3
 """Version of the team's messages; any other is refused."""
+
+CHECKSUM_BYTES = 4
+"""CRC-32 (ISO 3309, as zlib computes it), little-endian, of all that stands before it [B]."""
 
 MAX_ID = 2**31
 MAX_MEMBERS = 1024
@@ -104,14 +109,21 @@ Word = TypeVar("Word", bound=StrEnum)
 def encode(message: TeamMessage) -> bytes:
     """The payload of a message."""
     kind, fields = _ENCODERS[type(message)](message)
-    payload: bytes = msgpack.packb([SCHEMA, kind, *fields])
-    return payload
+    return sealed(msgpack.packb([SCHEMA, kind, *fields]))
+
+
+def sealed(content: bytes) -> bytes:
+    """Content and its checksum: a payload."""
+    return content + zlib.crc32(content).to_bytes(CHECKSUM_BYTES, "little")
 
 
 def decode(payload: bytes) -> TeamMessage:
     """The message in a payload; DecodeError for anything that is not exactly one."""
+    packed = payload[:-CHECKSUM_BYTES]
+    if sealed(packed) != payload:
+        raise DecodeError("altered on its way, or no team message: its checksum is wrong")
     try:
-        content = msgpack.unpackb(payload, strict_map_key=True)
+        content = msgpack.unpackb(packed, strict_map_key=True)
     except (ValueError, TypeError, msgpack.UnpackException, RecursionError) as error:
         raise DecodeError("not msgpack") from error
     if type(content) is not list or len(content) < 2:

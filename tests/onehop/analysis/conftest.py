@@ -5,10 +5,10 @@ from pathlib import Path
 import pytest
 
 from onehop.analysis import Log, open_log
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import (
     ClockSection,
-    FaultSection,
     GoalSection,
     MapSection,
     StartSection,

@@ -9,8 +9,9 @@ import pytest
 from onehop.analysis import Log, open_log
 from onehop.analysis.tables import Table
 from onehop.analysis.timeline import leadership
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.messages import LeadershipTerm
-from onehop.contracts.sections import FaultSection, GoalSection
+from onehop.contracts.sections import GoalSection
 
 from .conftest import KILLED_S, LEADER, SUCCESSOR, scenario, write_log
 

@@ -10,9 +10,9 @@ from typing import Annotated, Any
 import pytest
 
 from onehop.contracts.errors import ScenarioError
+from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.ranges import Range, out_of_range
 from onehop.contracts.scenario import Scenario
-from onehop.contracts.sections import FaultSection
 from onehop.scenario import scenario_file
 
 MISSION = """

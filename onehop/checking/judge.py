@@ -1,0 +1,140 @@
+"""Reads a log once, tick by tick, and asks every invariant of every tick; its memory is bounded."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+from onehop.checking.completeness import Completeness, DigestCheck
+from onehop.checking.fault_air import FaultyAir
+from onehop.checking.fault_bit import FaultBit
+from onehop.checking.findings import Findings, Violation
+from onehop.checking.invariants import (
+    COMPLETE,
+    EPOCHS,
+    FAULT_BIT,
+    INVARIANTS,
+    MEDIAN,
+    MOTION,
+    NO_COLLISION,
+    NOT_IN_THESIS,
+    ONE_LEADER,
+    OWN_VOICE,
+    RADIO_INTEGRITY,
+    RE_ELECTION,
+    SHAPE,
+    SILENCE,
+    UNEXERCISED,
+)
+from onehop.checking.leaders import Leadership
+from onehop.checking.motion import Collisions, Motion
+from onehop.checking.radio import RadioIntegrity
+from onehop.checking.snapshot import Snapshot, snapshot
+from onehop.checking.team import Team
+from onehop.checking.voice import Voices
+from onehop.contracts.errors import LogError
+from onehop.wire.journal import WireMessage
+from onehop.wire.log_reader import LogFile
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """What was found in one log.
+
+    ticks: that could be read. checked: how often each wanted invariant was judged. broken: how many
+    violations each has, if any. violations: the first of each, in order of invariant and tick.
+    unexercised: what was not judged, and why.
+    """
+
+    ticks: int
+    checked: dict[str, int]
+    broken: dict[str, int]
+    violations: tuple[Violation, ...]
+    unexercised: dict[str, str]
+
+    @property
+    def holds(self) -> bool:
+        """Whether nothing was found that breaks an invariant."""
+        return not self.violations
+
+
+def judge(log: LogFile, only: Iterable[str] = ()) -> Report:
+    """Test the invariants of a log, all or those named. A torn one is judged as far as it goes."""
+    scenario, summary = log.bundle.scenario, log.summary
+    wanted = frozenset(only) or frozenset(INVARIANTS)
+    findings = Findings(wanted)
+    period_ns, robots = scenario.clock.period_ns, scenario.team.robots
+    completeness = Completeness(findings, period_ns)
+    digest = DigestCheck(findings)
+    collisions = Collisions(findings, scenario)
+    checks = [
+        check
+        for names, check in (
+            ((COMPLETE,), completeness),
+            ((OWN_VOICE, SILENCE), Voices(findings, robots)),
+            ((MEDIAN, SHAPE, EPOCHS), Team(findings, scenario.team)),
+            ((ONE_LEADER, RE_ELECTION), Leadership(findings, scenario)),
+            ((RADIO_INTEGRITY,), RadioIntegrity(findings, scenario.radio, period_ns)),
+            ((FAULT_BIT,), FaultBit(findings, scenario)),
+            ((FAULT_BIT,), FaultyAir(findings, scenario)),
+            ((NO_COLLISION,), collisions),
+            ((MOTION,), Motion(findings, scenario)),
+        )
+        if wanted.intersection(names)
+    ]
+    reading = _Reading(log)
+    for now, messages in reading.ticks():
+        digest.take(now.tick, messages)
+        for check in checks:
+            check.take(now)
+    if reading.error is not None:
+        completeness.on_end_of_reading(reading.error)
+    else:
+        digest.finish(summary)
+        completeness.finish(summary)
+        is_whole = summary is not None and summary["ticks"] == reading.count
+        collisions.finish(summary, is_whole)
+    return _report(findings, scenario.team.profile, reading.count)
+
+
+class _Reading:
+    """Reads a log as far as it goes. count: ticks that were read. error: why it ended early, if it did.
+
+    The last tick before a tear, or before what cannot be read, is left out if it is not whole.
+    """
+
+    def __init__(self, log: LogFile) -> None:
+        self._log = log
+        self.count = 0
+        self.error: str | None = None
+
+    def ticks(self) -> Iterator[tuple[Snapshot, list[WireMessage]]]:
+        """Every tick, decoded and as it was written."""
+        last: tuple[Snapshot, list[WireMessage]] | None = None
+        try:
+            for logged in self._log.ticks():
+                if last is not None:
+                    self.count += 1
+                    yield last
+                follows = last is not None and logged.tick == last[0].tick + 1
+                last = snapshot(logged, follows), logged.messages
+        except LogError as error:
+            self.error = error.problem
+        if last is not None and (last[0].is_whole() or not (self._log.torn or self.error)):
+            self.count += 1
+            yield last
+
+
+def _report(findings: Findings, profile: str, ticks: int) -> Report:
+    names = [name for name in INVARIANTS if name in findings.wanted]
+    reasons = {**UNEXERCISED, **(NOT_IN_THESIS if profile == "thesis" else {})}
+    order = {name: number for number, name in enumerate(names)}
+    return Report(
+        ticks=ticks,
+        checked={name: findings.checked[name] for name in names},
+        broken={name: findings.broken[name] for name in names if findings.broken[name]},
+        violations=tuple(sorted(findings.violations, key=lambda one: (order[one.invariant], one.tick))),
+        unexercised={
+            name: reasons.get(name, "the log has no tick")
+            for name in names
+            if not findings.checked[name] and not findings.broken[name]
+        },
+    )

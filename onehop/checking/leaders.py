@@ -1,0 +1,189 @@
+"""`one-leader` and `re-election`: what becomes of leadership among robots that can hear each other.
+
+Bounds in Next periods T, as docs/modes.md derives them for profile `team`: B = 4 T, and 3 T more where a
+roster still names robots that are gone or out of reach, since those have to be given up first.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from onehop.checking.findings import Exhibit, Findings
+from onehop.checking.invariants import ONE_LEADER, RE_ELECTION
+from onehop.checking.reach import Links
+from onehop.checking.snapshot import Snapshot
+from onehop.contracts.messages import Truth
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.team import Mode, Status
+
+BOUND_PERIODS = 4
+"""B: Next periods after which robots that hear each other have one leader."""
+
+GIVING_UP_PERIODS = 3
+"""Next periods more in which the dead are given up: lost_after of 2, and the first asking."""
+
+
+@dataclass(slots=True)
+class _Vacancy:
+    """A leader has left. rest: who obeyed it. deadline: tick by which a new one acts."""
+
+    leader: int
+    rest: list[int]
+    tick: int
+    deadline: int
+    last_word: Exhibit
+
+
+class Leadership:
+    """Watches who acts as leader, and who could hear it."""
+
+    def __init__(self, findings: Findings, scenario: Scenario) -> None:
+        team, period_ns = scenario.team, scenario.clock.period_ns
+        self._findings = findings
+        self._is_team_profile = team.profile == "team"
+        self._orphans_stop = not self._is_team_profile and team.orphan == "stop"
+        next_ns = round(team.next_period * 1e9)
+        self._next_ticks = next_ns / period_ns
+        self._bound = int(BOUND_PERIODS * self._next_ticks) + 1
+        giving_up = max(GIVING_UP_PERIODS, team.lost_after + 1)
+        self._long_bound = int((BOUND_PERIODS + giving_up) * self._next_ticks) + 1
+        self._patience = team.leader_timeout * 1e9 / period_ns
+        successor = team.successor_timeout if self._is_team_profile else team.leader_timeout
+        self._successor_patience = successor * 1e9 / period_ns
+        self._links = Links(team.robots, scenario.radio, next_ns)
+        self._statuses: dict[int, Status] = {}
+        self._acting_since: dict[int, int] = {}
+        self._sound_since: dict[int, int] = {}
+        self._leaderless_since: dict[tuple[int, ...], int] = {}
+        self._vacancies: list[_Vacancy] = []
+
+    def take(self, now: Snapshot) -> None:
+        """One more tick."""
+        if now.truth is None:
+            self._forget()
+            return
+        if not now.follows:
+            self._forget()
+        before = self._statuses
+        self._links.take(now, now.truth)
+        self._statuses = {
+            robot: action.status for robot, action in now.actions.items() if robot in now.present
+        }
+        leaders = [robot for robot, status in self._statuses.items() if status.leader == robot]
+        if self._is_team_profile:
+            self._judge_two(now, leaders)
+            self._judge_none(now, leaders)
+        self._open_vacancies(now, now.truth, before)
+        self._judge_vacancies(now, leaders)
+
+    def _forget(self) -> None:
+        self._statuses, self._acting_since, self._sound_since = {}, {}, {}
+        self._leaderless_since = {}
+        self._vacancies = []
+
+    # one-leader
+
+    def _judge_two(self, now: Snapshot, leaders: list[int]) -> None:
+        """Of two that act as leader and hear each other one yields."""
+        tick, links = now.tick, self._links
+        self._acting_since = {robot: self._acting_since.get(robot, tick) for robot in leaders}
+        self._sound_since = {
+            robot: self._sound_since.get(robot, tick) if self._is_sound(robot, now) else tick + 1
+            for robot in leaders
+        }
+        linked = np.array(links.since <= tick - self._bound)
+        np.fill_diagonal(linked, val=False)
+        if linked.any():
+            self._findings.count(ONE_LEADER)
+        for number, a in enumerate(leaders):
+            for b in leaders[:number]:
+                acting = max(self._acting_since[a], self._acting_since[b])
+                since = max(int(links.since[links.row[a], links.row[b]]), acting)
+                sound = max(since, self._sound_since[a], self._sound_since[b])
+                if tick - since >= self._long_bound or tick - sound >= self._bound:
+                    heard_s = (tick - since) / self._next_ticks
+                    what = (
+                        f"robots {b} and {a} have both acted as leader and heard each other for "
+                        f"{heard_s:.1f} Next periods"
+                    )
+                    evidence = now.status_of(b), now.status_of(a)
+                    self._findings.report_state(ONE_LEADER, tick, (a, b), what, *evidence)
+
+    def _is_sound(self, robot: int, now: Snapshot) -> bool:
+        """Whether everyone on the roster of a leader is there and linked with it."""
+        members = [one for one in self._statuses[robot].members if one != robot]
+        row, since = self._links.row, self._links.since[self._links.row[robot]]
+        return all(one in now.present and since[row[one]] <= now.tick for one in members)
+
+    def _judge_none(self, now: Snapshot, leaders: list[int]) -> None:
+        """A group out of everyone's reach, all linked with each other, is not without a leader for B."""
+        before, self._leaderless_since = self._leaderless_since, {}
+        present = sorted(self._statuses)
+        if not present or self._covers(leaders, present):
+            return
+        for group in self._links.groups(present):
+            if set(group) & set(leaders) or not self._links.are_linked_since(group, now.tick):
+                continue
+            key = tuple(group)
+            since = self._leaderless_since[key] = before.get(key, now.tick)
+            named = {one for robot in group for one in self._statuses[robot].members}
+            bound = self._bound if named <= set(group) else self._long_bound
+            if now.tick - since >= bound:
+                what = (
+                    f"{len(group)} robots hear each other and have been without a leader since {since}"
+                )
+                evidence = [now.status_of(robot) for robot in group]
+                self._findings.report_state(ONE_LEADER, now.tick, key, what, *evidence)
+
+    def _covers(self, leaders: list[int], present: list[int]) -> bool:
+        """Whether everyone is a leader or may hear one."""
+        rows = [self._links.row[robot] for robot in present]
+        mine = [self._links.row[robot] for robot in leaders]
+        if not mine:
+            return False
+        out_of_reach = self._links.apart[np.ix_(rows, mine)].all(axis=1)
+        return not out_of_reach.any()
+
+    # re-election
+
+    def _open_vacancies(self, now: Snapshot, truth: Truth, before: dict[int, Status]) -> None:
+        for departure in truth.departures:
+            leader = departure.robot
+            status = before.get(leader)
+            if status is None or status.leader != leader:
+                continue
+            rest = [
+                robot
+                for robot, one in before.items()
+                if robot != leader and robot in now.present
+                and one.leader == leader and one.mode is not Mode.JOINING
+            ]  # fmt: skip
+            if not rest or (self._orphans_stop and len(rest) == 1):
+                continue
+            named = {one for robot in rest for one in before[robot].members}
+            missing = len(named - {leader, *rest})
+            ticks = self._patience + 2 * self._next_ticks + missing * self._successor_patience
+            says = f"robot {leader} left: {departure.why}"
+            word = now.exhibit("truth", says)
+            self._vacancies.append(_Vacancy(leader, rest, now.tick, now.tick + int(ticks) + 1, word))
+
+    def _judge_vacancies(self, now: Snapshot, leaders: list[int]) -> None:
+        open_still = []
+        for vacancy in self._vacancies:
+            rest = vacancy.rest
+            if not self._links.are_linked_since(rest, vacancy.tick):
+                continue
+            heads = [self._statuses[robot].leader for robot in rest if robot in self._statuses]
+            if any(head in leaders for head in heads):
+                self._findings.count(RE_ELECTION)
+            elif now.tick < vacancy.deadline:
+                open_still.append(vacancy)
+            else:
+                self._findings.count(RE_ELECTION)
+                ticks = now.tick - vacancy.tick
+                what = (
+                    f"{ticks} ticks after leader {vacancy.leader} left nobody leads those who obeyed it"
+                )
+                evidence = [vacancy.last_word, *(now.status_of(robot) for robot in rest)]
+                self._findings.report(RE_ELECTION, now.tick, tuple(rest), what, *evidence)
+        self._vacancies = open_still

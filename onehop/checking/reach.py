@@ -1,0 +1,160 @@
+"""Who could hear whom, from poses, cuts, jams and what became of messages: path loss worked out anew.
+
+Two running robots, neither of them slow, are **linked** while each receives the other, on the mean and
+with its jams, at least MARGIN_DB above the receive threshold, no cut lies between them, and no message
+between them is lost or late. They are **apart** when no fading could carry a frame between them.
+
+Mean SNR at distance d (thesis 3.7.1): Pt + 2G - L - FSPL(d0) - 10 n log10(d / d0) - noise, and a jam
+raises the noise. Walls that weaken signals (wall_loss_db) are not looked at: what crosses one may be
+lost, and a message that is lost ends a link here.
+"""
+
+import math
+
+import numpy as np
+
+from onehop.checking.snapshot import Snapshot
+from onehop.contracts.arrays import BoolArray, FloatArray
+from onehop.contracts.messages import DeliveryStatus, Truth, Verdict
+from onehop.contracts.radio_section import RadioSection
+
+MARGIN_DB = 4.0
+"""What a link has above the receive threshold: a standard deviation of the thesis's fading [dB]."""
+
+FARTHEST_FADE_DB = 24.0
+"""No fading carries a frame over more: six standard deviations of the thesis's [dB]."""
+
+_LIGHT_SPEED = 3.0e8
+_PRESET = {"thesis": (23.0103, 2.0, -77.0357), "physical": (15.0, 2.6, -93.55)}
+"""Power [dBm], exponent, noise [dBm]: 0.2 W with 60 dB at 1 m, and kTB + 7 dB (thesis 3.7; docs)."""
+
+_THRESHOLD_DB = 32.0
+_SHADOWING_DB = 4.0
+
+
+def _given(value: float | None, default: float) -> float:
+    return default if value is None else value
+
+
+class Budget:
+    """Mean SNR under one radio section. shadowing_db: standard deviation of its fading."""
+
+    def __init__(self, radio: RadioSection) -> None:
+        power, exponent, noise = _PRESET[radio.preset]
+        self.noise_dbm = _given(radio.noise_dbm, noise)
+        self.exponent = _given(radio.path_loss_exponent, exponent)
+        self.threshold_db = _given(radio.receive_threshold_db, _THRESHOLD_DB)
+        self.shadowing_db = _given(radio.shadowing_db, _SHADOWING_DB)
+        self.nearest = radio.reference_distance
+        loss = 20.0 * math.log10(4.0 * math.pi * self.nearest * radio.frequency_hz / _LIGHT_SPEED)
+        gain = 2.0 * radio.antenna_gain_dbi - radio.system_loss_db
+        self.reference_db = _given(radio.tx_power_dbm, power) + gain - loss - self.noise_dbm
+
+    def mean_snr_db(self, distances: FloatArray) -> FloatArray:
+        """Without walls, at distances [m] of any shape."""
+        ratio = np.maximum(distances / self.nearest, 1.0)
+        snr: FloatArray = self.reference_db - 10.0 * self.exponent * np.log10(ratio)
+        return snr
+
+    def mean_snr_at(self, distance: float) -> float:
+        """The same at one distance [m]."""
+        return float(self.mean_snr_db(np.array(distance)))
+
+    def jam_rise_db(self, truth: Truth, x: float, y: float) -> float:
+        """What the jams of a tick add to the noise at a place [dB]."""
+        total = 1.0
+        for jam in truth.jams:
+            if math.hypot(x - jam.x, y - jam.y) <= jam.radius:
+                total += 10.0 ** ((jam.noise_dbm - self.noise_dbm) / 10.0)
+        return 10.0 * math.log10(total)
+
+
+class Links:
+    """Links of a team, tick by tick. robots: its ids.
+
+    since: (n, n) first tick from which two robots have been linked without a break; the tick after this
+    one where they are not. apart: (n, n) pairs that cannot hear each other now.
+    """
+
+    def __init__(self, robots: tuple[int, ...], radio: RadioSection, late_ns: int) -> None:
+        self.row = {robot: row for row, robot in enumerate(robots)}
+        self.robots = robots
+        self._budget = Budget(radio)
+        self._late_ns = late_ns
+        count = len(robots)
+        self.since = np.zeros((count, count), dtype=np.int64)
+        self.apart: BoolArray = np.ones((count, count), dtype=np.bool_)
+        self._incarnation = np.full(count, -1)
+
+    def take(self, now: Snapshot, truth: Truth) -> None:
+        """One more tick, with its truth."""
+        count = len(self.robots)
+        place = np.full((count, 2), np.nan)
+        incarnation = np.full(count, -1)
+        rise = np.zeros(count)
+        for one in now.running():
+            row = self.row.get(one.robot)
+            if row is not None:
+                place[row] = one.pose.x, one.pose.y
+                incarnation[row] = one.incarnation
+                if truth.jams:
+                    rise[row] = self._budget.jam_rise_db(truth, one.pose.x, one.pose.y)
+        apart = place[:, None, :] - place[None, :, :]
+        distances = np.hypot(apart[..., 0], apart[..., 1])
+        snr = self._budget.mean_snr_db(distances) - rise[None, :]
+        snr[np.isnan(snr)] = -np.inf
+        for cut in truth.cuts:
+            side_a, side_b = self._rows(cut.side_a), self._rows(cut.side_b)
+            snr[np.ix_(side_a, side_b)] = -np.inf
+            if not cut.one_way:
+                snr[np.ix_(side_b, side_a)] = -np.inf
+        weakest = np.minimum(snr, snr.T)
+        linked = weakest >= self._budget.threshold_db + MARGIN_DB
+        self.apart = np.maximum(snr, snr.T) < self._budget.threshold_db - FARTHEST_FADE_DB
+        changed = incarnation != self._incarnation
+        self._incarnation = incarnation
+        if not now.follows:
+            changed[:] = True
+        for slow in truth.slow:
+            changed[self._rows((slow.robot,))] = True
+        later = now.tick + 1
+        self.since[~linked] = later
+        fresh = changed[:, None] | changed[None, :]
+        self.since[fresh & linked] = now.tick
+        if now.record is not None:
+            for verdict in now.record.verdicts:
+                if self._breaks(verdict):
+                    a, b = self.row.get(verdict.source), self.row.get(verdict.receiver)
+                    if a is not None and b is not None:
+                        self.since[a, b] = self.since[b, a] = later
+
+    def _rows(self, robots: tuple[int, ...]) -> list[int]:
+        return [self.row[robot] for robot in robots if robot in self.row]
+
+    def _breaks(self, verdict: Verdict) -> bool:
+        """Whether a message came too late to mean anything, or not at all."""
+        if verdict.status is not DeliveryStatus.DELIVERED:
+            return True
+        return verdict.arrival_ns - verdict.offered_ns > self._late_ns
+
+    def are_linked_since(self, robots: list[int], tick: int) -> bool:
+        """Whether all of these have been linked with each other from a tick on."""
+        rows = self._rows(tuple(robots))
+        block = self.since[np.ix_(rows, rows)] <= tick
+        np.fill_diagonal(block, val=True)
+        return len(rows) == len(robots) and bool(block.all())
+
+    def groups(self, robots: list[int]) -> list[list[int]]:
+        """Robots in groups, each out of the reach of all others."""
+        near_each_other = ~self.apart
+        left, groups = self._rows(tuple(robots)), []
+        while left:
+            group, edge = [], [left.pop(0)]
+            while edge:
+                row = edge.pop()
+                group.append(self.robots[row])
+                near = [other for other in left if near_each_other[row, other]]
+                left = [other for other in left if other not in near]
+                edge += near
+            groups.append(sorted(group))
+        return groups
