@@ -189,8 +189,9 @@ def main():
     )
     for line in sys.stdin:
         run = json.loads(line)
-        ns.RngSeedManager.SetSeed(1)
         ns.RngSeedManager.SetRun(run["seed"])
+        ns.RngSeedManager.ResetNextStreamIndex()  # a run is the same whatever ran before it
+        ns.Mac48Address.ResetAllocationIndex()
         simulated = messages(run) if run["protocol"] else flows(run)
         print(json.dumps(simulated), flush=True)
 

@@ -282,7 +282,6 @@ class Dcf:
         rts_end = now - timing.cts - timing.sifs - 2 * exchange.delay
         self._await(exchange, max(now, rts_end + timing.response_timeout))
         if exchange.reservation is not None:
-            exchange.reservation.later.append(exchange.emission)
             self._watch_nav(exchange.reservation, rts_end + exchange.delay)
 
     def _on_cts(self, exchange: Exchange) -> None:

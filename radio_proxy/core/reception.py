@@ -170,7 +170,7 @@ class Receivers:
         detected = emission.start + DETECTION
         reception = _reception(emission)
         reception.locked = []
-        rivals = [other for other in reception.overlaps if other.start < detected < other.end]
+        rivals = [other for other in reception.overlaps if other.end > detected]
         deaf, locked_on, rises_db = reception.deaf, self._locked_on, self._propagation.noise_rise_db
         for index, mean_db in enumerate(emission.row):
             station = StationIndex(index)

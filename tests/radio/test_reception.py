@@ -21,7 +21,10 @@ WEAK, ERRORS = DeliveryStatus.BELOW_THRESHOLD, DeliveryStatus.BIT_ERRORS
 
 
 class Air:
-    """Emissions at given times on a medium without a DCF. Station 1 is the receiver, at the origin."""
+    """Emissions at given times on a medium without a DCF. Station 1 is the receiver, at the origin.
+
+    errors: its index, once for every frame that it received with errors.
+    """
 
     def __init__(self, places: list[tuple[float, float]], seed: int = 1, **keys: float | None) -> None:
         section = RadioSection(**{"shadowing_db": 0.0, **keys})  # type: ignore[arg-type]
@@ -32,6 +35,7 @@ class Air:
             Presence(r, 0, Pose(x, y, 0.0), still, False)
             for r, (x, y) in zip(robots, places, strict=True)
         ]
+        self.errors: list[int] = []
         cuts = (Cut((1,), (3,)),)
         self.propagation.update(tuple(presences), cuts, ())
         self.medium = Medium(self.propagation, Draws(generator(seed, "radio")), link_rules(section))
@@ -58,7 +62,7 @@ class Air:
             if begins:
                 self.medium.begin(emissions[i])
             else:
-                self.medium.end(emissions[i], time)
+                self.errors += [s for s in self.medium.end(emissions[i], time) if s == 1]
         return [self.medium.receivers.judgement(e, StationIndex(1))[0] for e in emissions]
 
 
@@ -70,6 +74,9 @@ NEAR_AND_FAR = [(-10.0, 0.0), (0.0, 0.0), (2.0, 0.0)]
 def test_a_receiver_stays_with_the_frame_that_it_is_locked_on() -> None:
     """At 1 Mb/s a frame survives an equal one that comes later: SINR 0 dB."""
     assert Air(EQUAL).judge((0, 0, 7000), (2, 500, 7500)) == [None, BUSY]
+    assert Air(EQUAL).judge((0, 0, 1000), (2, 998, 2000)) == [None, BUSY]
+    lax = Air(EQUAL, receive_threshold_db=-9.5)
+    assert lax.judge((0, 0, 1000), (2, 2, 1002)) == [None, COLLISION]
 
 
 def test_a_frame_that_begins_among_others_is_not_detected() -> None:
@@ -135,13 +142,17 @@ def test_each_stretch_counts_with_its_own_bits() -> None:
 def test_the_header_has_a_rate_of_its_own() -> None:
     """An equal frame over preamble and header only, at 0 dB: 1 Mb/s survives, 11 Mb/s would not."""
     assert Air(EQUAL).judge((0, 0, 1000), (2, 10, 190), rate_mbps=11.0)[0] is None
-    assert Air(EQUAL).judge((0, 0, 1000), (2, 10, 250), rate_mbps=11.0)[0] is COLLISION
+    air = Air(EQUAL)
+    assert air.judge((0, 0, 1000), (2, 10, 250), rate_mbps=11.0)[0] is COLLISION
+    assert air.errors == [1]
 
 
 def test_a_header_that_is_lost_leaves_the_receiver_free() -> None:
-    """14 dB less than nothing over the header: what comes then is received."""
+    """-14 dB over the header: what comes then is received, and nothing counts as an error."""
     frames = (0, 0, 3000), (2, 100, 195), (2, 1000, 2000)
-    assert Air(NEAR_AND_FAR, preamble_sinr_db=4.0).judge(*frames) == [COLLISION, BUSY, None]
+    air = Air(NEAR_AND_FAR, preamble_sinr_db=4.0)
+    assert air.judge(*frames) == [COLLISION, BUSY, None]
+    assert air.errors == []
     before = (0, 0, 3000), (2, 100, 185), (2, 188, 1000)
     assert Air(NEAR_AND_FAR, preamble_sinr_db=4.0).judge(*before)[2] is BUSY
 

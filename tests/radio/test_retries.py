@@ -108,6 +108,17 @@ def test_frames_of_the_dcf_end_by_the_count_that_is_theirs(rate_mbps: float, att
     assert (frame.attempts, frame.cause) == (attempts, DeliveryStatus.BIT_ERRORS)
 
 
+def test_an_acknowledged_frame_resets_the_window() -> None:
+    """Two fresh frames in one instant collide; both arrive in the end."""
+    cell = Cell([(0, 0)] * 4, RadioSection(shadowing_db=0.0))
+    frames = [cell.send_at(0, 0, 1), cell.send_at(0, 2, 3)]
+    cell.run(700)
+    assert all(cell.dcf._stations[i].failures == 1 for i in (0, 2))
+    cell.run(60_000)
+    assert all(frame.received and frame.attempts > 1 for frame in frames)
+    assert all(cell.dcf._stations[i].failures == 0 for i in (0, 2))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("distance", [10.0, 15.0, 20.0])
 def test_a_link_with_both_counts_is_within_3_percent_of_the_closed_form(distance: float) -> None:
