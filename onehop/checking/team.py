@@ -69,12 +69,10 @@ class Team:
 
     @staticmethod
     def _has_heard(status: Status, known: _Memory | None, orders: list[tuple[int, Order]]) -> bool:
-        if known is not None and known.heard and _same_team(known.status, status):
+        mine = Roster(status.epoch, status.members)
+        if known is not None and known.heard and mine == (known.status.epoch, known.status.members):
             return True
-        return any(
-            source == status.leader and order.roster.members == status.members
-            for source, order in orders
-        )
+        return any(source == status.leader and order.roster == mine for source, order in orders)
 
     # median
 
