@@ -69,12 +69,10 @@ class Team:
 
     @staticmethod
     def _has_heard(status: Status, known: _Memory | None, orders: list[tuple[int, Order]]) -> bool:
-        if known is not None and known.heard and _same_team(known.status, status):
+        mine = Roster(status.epoch, status.members)
+        if known is not None and known.heard and mine == (known.status.epoch, known.status.members):
             return True
-        return any(
-            source == status.leader and order.roster.members == status.members
-            for source, order in orders
-        )
+        return any(source == status.leader and order.roster == mine for source, order in orders)
 
     # median
 
@@ -173,14 +171,20 @@ class Team:
     def _wrong_change(
         robot: int, status: Status, known: _Memory, orders: list[tuple[int, Order]]
     ) -> str | None:
-        """Within one epoch a robot goes over to another roster only if it hears it, to a better one."""
+        """Within one epoch a robot goes over to another roster only if it hears it, to a better one.
+
+        Who hears that its leader has left it out joins any team.
+        """
         before = known.status
         if _same_team(before, status) or Mode.JOINING in (before.mode, status.mode):
             return None
         mine = Roster(status.epoch, status.members)
         if all(order.roster != mine for _, order in orders):
             return f"robot {robot} changes its roster within epoch {status.epoch} and was not told so"
-        settled = known.heard or before.leader == robot
+        is_left_out = any(
+            source == before.leader and robot not in order.roster.members for source, order in orders
+        )
+        settled = (known.heard and not is_left_out) or before.leader == robot
         if settled and not mine.is_larger(Roster(before.epoch, before.members)):
             return f"robot {robot} leaves its roster for one that is not to be preferred"
         return None
