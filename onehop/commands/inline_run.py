@@ -70,8 +70,9 @@ class _Log:
 
 
 class _Watch:
-    """Shows the mission some times a second and tells of its faults; ends it between two ticks when people
-    ask for it.
+    """Shows the mission some times a second and tells of its faults.
+
+    Ends it between two ticks when people ask for it.
     """
 
     world: World
