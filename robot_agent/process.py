@@ -23,7 +23,8 @@ def main() -> int:
     name = topics.robot_name(options.id)
     with startup.connect(options, name) as bus:
         bus.watch(topics.WORLD)
-        robot = Robot(decode(Briefing, startup.briefing(bus, name)))
+        arrival = bus.publisher(topics.by(name, topics.ARRIVAL))
+        robot = Robot(decode(Briefing, startup.briefing(bus, name, lambda: arrival(b""))))
         startup.calm_garbage_collector()
         return _serve(bus, robot, name)
 

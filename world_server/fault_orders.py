@@ -1,6 +1,11 @@
-"""Faults ordered by hand: taken in whenever they come, carried out with the next tick, and answered."""
+"""Faults ordered by hand: taken in whenever they come, carried out with the next tick, and answered.
+
+A robot that has left, and whose process somebody else has started again (a container), is restarted too.
+"""
 
 from collections import OrderedDict
+from collections.abc import Iterator
+from functools import partial
 
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
@@ -19,18 +24,26 @@ MOST_REMEMBERED = 1000
 
 
 class FaultOrders:
-    """The world's side of `onehop fault`."""
+    """The world's side of `onehop fault`. robots: ids of the team.
 
-    def __init__(self, bus: Bus, mail: Mailbox) -> None:
+    arrived: robots whose restart finds their process there already.
+    """
+
+    def __init__(self, bus: Bus, mail: Mailbox, robots: tuple[int, ...]) -> None:
         self._put = bus.publisher(topics.to(topics.INJECTOR, topics.ANSWER))
         self._waiting: dict[int, FaultSection] = {}
         self._taken: dict[int, FaultSection] = {}
         self._answers: OrderedDict[int, bytes] = OrderedDict()
+        self._arriving: set[int] = set()
+        self.arrived: set[int] = set()
         mail.read(topics.INJECTOR, topics.FAULT, self._on_order)
+        for robot in robots:
+            mail.read(topics.robot_name(robot), topics.ARRIVAL, partial(self._on_arrival, robot))
 
     def take(self, world: World) -> tuple[FaultSection, ...]:
         """The orders that are to be carried out with the next tick; the others are refused."""
-        if not self._waiting:
+        self.arrived = set()
+        if not (self._waiting or self._arriving):
             return ()
         for number, fault in self._waiting.items():
             refusal = world.refusal(fault)
@@ -39,7 +52,14 @@ class FaultOrders:
             else:
                 self._answer(FaultAnswer(number, world.tick, refusal, fault))
         self._waiting = {}
-        return tuple(self._taken.values())
+        return (*self._restarts(world), *self._taken.values())
+
+    def _restarts(self, world: World) -> Iterator[FaultSection]:
+        """A restart of each robot that has arrived and is not present."""
+        self.arrived = self._arriving.difference(one.robot for one in world.truth().present)
+        self._arriving = set()
+        for robot in sorted(self.arrived):
+            yield FaultSection("restart", robots=(robot,))
 
     def confirm(self, world: World) -> None:
         """Answer what has been carried out with the tick that begins."""
@@ -54,6 +74,9 @@ class FaultOrders:
         if len(self._answers) > MOST_REMEMBERED:
             self._answers.popitem(last=False)
         self._put(data)
+
+    def _on_arrival(self, robot: int, _: bytes) -> None:
+        self._arriving.add(robot)
 
     def _on_order(self, data: bytes) -> None:
         try:

@@ -40,7 +40,7 @@ class LockStep:
     def _tick(self) -> Outcome | None:
         world = self.world
         truth = world.truth()
-        self.faults.carry_out(truth)
+        self.faults.carry_out(truth, self.orders.arrived)
         encoded_truth = encode(truth)
         self.radio.send(encoded_truth)
         observations = [(topics.obs(i), encode(seen)) for i, seen in world.observe().items()]

@@ -80,7 +80,7 @@ def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str
         RemoteRadio(bus, mail, silence_s),
         RemoteRobots(bus, mail, roll, robots, silence_s),
         ProcessFaults(bus, mail, roll, robots, open_briefings, silence_s),
-        FaultOrders(bus, mail),
+        FaultOrders(bus, mail, robots),
         recording,
         ProgressReports(bus),
     )

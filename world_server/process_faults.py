@@ -5,7 +5,7 @@ robot's process kills itself; to stop it, to let it go on, to kill it while it i
 again is the operator's part, and where there is none (containers) a stopped robot is only not asked.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Set
 from contextlib import AbstractContextManager
 from functools import partial
 
@@ -59,8 +59,11 @@ class ProcessFaults:
         for i in robots:
             mail.read(topics.robot_name(i), topics.AWAKE, partial(self._on_awake, i))
 
-    def carry_out(self, truth: Truth) -> None:
-        """Do to the processes what begins and ends with this truth. Raises MissionBrokenError."""
+    def carry_out(self, truth: Truth, arrived: Set[int]) -> None:
+        """Do to the processes what begins and ends with this truth. Raises MissionBrokenError.
+
+        arrived: robots whose processes have been started again by somebody else.
+        """
         if not (truth.faults or truth.departures or truth.stopped or self._stopped):
             return
         incarnations = {presence.robot: presence.incarnation for presence in truth.present}
@@ -70,7 +73,8 @@ class ProcessFaults:
         for fault in truth.faults:
             if fault.kind == "restart":
                 for robot in fault.robots:
-                    self._restart(robot, incarnations[robot])
+                    restart = self._let_take_part if robot in arrived else self._restart
+                    restart(robot, incarnations[robot])
         self._stop_and_wake(truth.stopped)
 
     def _stop_and_wake(self, stopped: tuple[int, ...]) -> None:
@@ -100,6 +104,13 @@ class ProcessFaults:
         self._tell(topics.RESTART, robot)
         with self._open_briefings():
             self._roll.gather([name], RESTART_S)
+
+    def _let_take_part(self, robot: int, incarnation: int) -> None:
+        """Brief a process that is there; if it is gone by now it will be missed."""
+        name = topics.robot_name(robot)
+        self._roll.expect_again(name, incarnation)
+        with self._open_briefings():
+            self._mail.wait(lambda: name in self._roll.present, RESTART_S)
 
     def _await_answer(self, what: str, robot: int) -> None:
         """Say something to a robot until it answers; if its process is dead it will be missed."""

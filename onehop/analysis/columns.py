@@ -238,9 +238,9 @@ TABLES: dict[str, TableSpec] = {
     "faults": TableSpec(
         "a fault that begins, by script or by hand", "truth", attrgetter("faults"),
         (
-            _C("kind", WORD), _C("robots", INTEGERS), _C("others", INTEGERS), _C("duration_s", REAL),
-            _C("x", REAL), _C("y", REAL), _C("heading_deg", REAL), _C("radius", REAL),
-            _C("noise_dbm", REAL), _C("direction", WORD), _C("probability", REAL),
+            _C("kind", WORD), _C("at_s", REAL), _C("robots", INTEGERS), _C("others", INTEGERS),
+            _C("duration_s", REAL), _C("x", REAL), _C("y", REAL), _C("heading_deg", REAL),
+            _C("radius", REAL), _C("noise_dbm", REAL), _C("direction", WORD), _C("probability", REAL),
             _C("delay_ticks", INTEGER),
         ),
     ),

@@ -103,8 +103,9 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         raise InputError(f"--at {at_s:g}", "the robot has not acted by then", "a later time [s]")
     tick, last_s = int(status["tick"][-1]), float(status["time_s"][-1])
     left = _left(ground, robot, tick)
-    if left is None and at_s > last_s + 2 * log.period_ns / 1e9:
-        raise InputError(f"--at {at_s:g}", "the log ends before that", f"at most {last_s:g} s")
+    seen_s = last_s if left else _last_seen_s(ground, robot, last_s)
+    if left is None and at_s > seen_s + 2 * log.period_ns / 1e9:
+        raise InputError(f"--at {at_s:g}", "the log ends before that", f"at most {seen_s:g} s")
     own = [
         trace
         for trace in join(ground["verdicts"], ground["transmit_requests"], log.period_ns)
@@ -126,7 +127,7 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         next_s=_last_command(own, robot, int(status["leader"][-1])),
         traces=tuple(trace for trace in own if trace.settled_s > last_s - window_s),
         events=_events(tables["notes"], last_s - window_s),
-        faults=tuple(_faults(log, robot, last_s)),
+        faults=tuple(_faults(log, robot, seen_s)),
         gains=log.scenario.gains,
         team=log.scenario.team,
     )
@@ -134,6 +135,12 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
 
 def _until(table: Table, tick: int) -> Table:
     return table.where(table["tick"] <= tick)
+
+
+def _last_seen_s(ground: dict[str, Table], robot: int, last_s: float) -> float:
+    """When a robot was there last [s]: later than it acted last if it is stopped."""
+    times = ground["poses"].of(robot)["time_s"]
+    return max(last_s, float(times[-1])) if len(times) else last_s
 
 
 def _left(ground: dict[str, Table], robot: int, tick: int) -> dict[str, Any] | None:

@@ -167,7 +167,4 @@ def _ids(robots: tuple[int, ...]) -> str:
 def begun_faults(faults: Table) -> list[FaultSection]:
     """The faults of a mission when they began, by script or by hand, from the table `faults`."""
     keys = [key for key in faults if key not in ("tick", "time_s")]
-    return [
-        FaultSection(at_s=at_s, **dict(zip(keys, values, strict=True)))
-        for at_s, *values in faults.rows("time_s", *keys)
-    ]
+    return [FaultSection(**dict(zip(keys, values, strict=True))) for values in faults.rows(*keys)]

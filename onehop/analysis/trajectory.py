@@ -65,7 +65,11 @@ def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
     draw_ground(axes, log.bundle, tables["jams"])
     faults = begun_faults(tables["faults"])[:MOST_FAULTS]
     for robot, colour in colours.items():
-        carried = [f.at_s or 0.0 for f in faults if f.kind == "kidnap" and robot in f.robots]
+        carried = [
+            tick
+            for tick, kind, robots in tables["faults"].rows("tick", "kind", "robots")
+            if kind == "kidnap" and robot in robots
+        ]
         _draw_path(axes, poses.of(robot), carried, colour)
     _draw_formations(axes, poses, status, colours)
     _draw_holds(axes, poses, colours)
@@ -91,10 +95,10 @@ def _tables(log: Log) -> dict[str, Table]:
     return log.build(("poses", "status", "departures", "contacts", "jams", "faults"), chosen)
 
 
-def _draw_path(axes: Axes, own: Table, carried: list[float], colour: str) -> None:
-    """carried: when the robot was put elsewhere [s]."""
+def _draw_path(axes: Axes, own: Table, carried: list[int], colour: str) -> None:
+    """carried: ticks with which the robot was put elsewhere."""
     x, y = own["x"].copy(), own["y"].copy()
-    x[np.isin(own["time_s"], carried)] = np.nan
+    x[np.isin(own["tick"], carried)] = np.nan
     away = np.flatnonzero(np.diff(own["tick"]) > 1)
     x[away], y[away] = np.nan, np.nan
     axes.plot(x, y, color=colour, linewidth=1.3, alpha=0.75, zorder=3, solid_capstyle="round")

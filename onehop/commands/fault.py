@@ -6,7 +6,14 @@ from typing import Any
 
 from onehop.commands.output import emit_json
 from onehop.contracts.errors import InputError
-from onehop.contracts.fault_section import KINDS, OWN_KEYS, FaultSection, fault_in_words, in_toml
+from onehop.contracts.fault_section import (
+    DIRECTIONS,
+    KINDS,
+    OWN_KEYS,
+    FaultSection,
+    fault_in_words,
+    in_toml,
+)
 from onehop.contracts.ranges import out_of_range
 from onehop.mission.injection import inject
 from onehop.mission.rendezvous import the_one_that_runs, way_into
@@ -66,6 +73,9 @@ def _checked(kind: str, values: dict[str, Any]) -> FaultSection:
     missing = [key for key in ("x", "y") if key in OWN_KEYS[kind] and key not in values]
     if missing:
         raise InputError(f"fault {kind}", f"{OPTIONS[missing[0]]} is missing", "where [m]")
+    if values.get("direction", "both") not in DIRECTIONS:
+        what = f"{values['direction']!r:.60} is unknown"
+        raise InputError(f"fault {kind}: --direction", what, f"one of {', '.join(DIRECTIONS)}")
     order = FaultSection(kind, **values)
     for problem in (*out_of_range(order), *replace(order, at_s=0.0).problems()):
         option = OPTIONS.get(problem.key.partition("[")[0], problem.key)

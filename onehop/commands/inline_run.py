@@ -5,6 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from onehop.contracts.fault_section import fault_in_words
 from onehop.contracts.messages import Action, Progress, RobotProgress
 from onehop.drivers import inline
 from onehop.mission.stops import Stopped, StopRequest
@@ -20,7 +21,11 @@ SHOW_S = 0.2
 
 
 def run_inline(
-    bundle: Bundle, folder: Path, record: bool, show: Callable[[Progress], None]
+    bundle: Bundle,
+    folder: Path,
+    record: bool,
+    show: Callable[[Progress], None],
+    tell: Callable[[str], None],
 ) -> dict[str, Any]:
     """Run a mission to its end, write its log and summary, and return the summary.
 
@@ -31,7 +36,7 @@ def run_inline(
     log = _Log(path, bundle) if record else None
     with StopRequest() as stop, explained(path, REMEDY):
         journal = Journal(log.write if log else lambda _, __: None)
-        watch = _Watch(stop, show)
+        watch = _Watch(stop, show, tell)
         started = time.monotonic()
         try:
             outcome = inline.run(bundle, journal, watch.look)
@@ -65,18 +70,26 @@ class _Log:
 
 
 class _Watch:
-    """Shows the mission some times a second, and ends it between two ticks when people ask for it."""
+    """Shows the mission some times a second and tells of its faults.
+
+    Ends it between two ticks when people ask for it.
+    """
 
     world: World
     """That of the mission, from its first tick on."""
 
-    def __init__(self, stop: StopRequest, show: Callable[[Progress], None]) -> None:
+    def __init__(
+        self, stop: StopRequest, show: Callable[[Progress], None], tell: Callable[[str], None]
+    ) -> None:
+        self._tell = tell
         self._stop = stop
         self._show = show
         self._next_show = 0.0
 
     def look(self, world: World, actions: dict[int, Action]) -> None:
         self.world = world
+        for fault in world.truth().faults:
+            self._tell(f"{world.time_ns / 1e9:g} s: {fault_in_words(fault)}")
         now = time.monotonic()
         if now >= self._next_show:
             self._next_show = now + SHOW_S

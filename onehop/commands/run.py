@@ -41,7 +41,7 @@ def run(
                 from onehop.commands.inline_run import run_inline
 
                 with scenario_file.in_file(scenario):
-                    summary = run_inline(bundle, folder, record, display.show)
+                    summary = run_inline(bundle, folder, record, display.show, display.tell)
             else:
                 from onehop.mission import launcher
 

@@ -21,6 +21,10 @@ FaultEvent = Literal["", "leader elected", "formed", "narrow", "arrived"]
 
 KINDS: tuple[FaultKind, ...] = get_args(FaultKind)
 
+Direction = Literal["both", "from", "to"]
+
+DIRECTIONS: tuple[Direction, ...] = get_args(Direction)
+
 OWN_KEYS: dict[FaultKind, tuple[str, ...]] = {
     "kill": ("robots",),
     "stop": ("robots", "duration_s"),
@@ -74,7 +78,7 @@ class FaultSection:
     nth: Annotated[int, Range(1, 1_000_000)] = 1
     after_s: Seconds = 0.0
     heading_deg: Annotated[float, Range(-360.0, 360.0)] = 0.0
-    direction: Literal["both", "from", "to"] = "both"
+    direction: Direction = "both"
     probability: Annotated[float, Range(0.0, 1.0)] = 1.0
     delay_ticks: Annotated[int, Range(0, 1000)] = 0
 

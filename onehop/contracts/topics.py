@@ -34,6 +34,9 @@ def heard(name: str) -> str:
 PERCEPT = "percept"
 """World to robot: its observation and its inbox of tick k."""
 
+ARRIVAL = "arrival"
+"""Robot to world: a process of this robot is there, and waits for its briefing."""
+
 OUT = "out"
 """Robot to world: its action of tick k."""
 

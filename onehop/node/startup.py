@@ -72,10 +72,14 @@ def credentials() -> dict[str, str] | None:
     return None if words is None else dict(word.split(":", 1) for word in words.split())
 
 
-def briefing(bus: Bus, name: str) -> bytes:
-    """Ask the world for this process's briefing; the world may need a moment to be ready."""
+def briefing(bus: Bus, name: str, announce: Callable[[], None] = lambda: None) -> bytes:
+    """Ask the world for this process's briefing; the world may need a moment to be ready.
+
+    announce: called before each question.
+    """
     deadline = time.monotonic() + BRIEFING_TIMEOUT_S
     while time.monotonic() < deadline:
+        announce()
         answer = bus.ask(topics.config(name), timeout_s=2.0)
         if answer is not None:
             return answer

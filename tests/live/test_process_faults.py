@@ -2,14 +2,18 @@
 
 import os
 import signal
+import subprocess
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from onehop.contracts.messages import Truth
+from onehop.drivers.replay import replay
 from onehop.mission.operator import STOPPED
 from onehop.node.bus import LEASE_MS
+from onehop.wire.codec import decode
 from onehop.wire.log_reader import LogFile, digest
 from tests.live.mission import DEADLINE_S, Mission, gone, proven
 from tests.onehop.scenes import field, log_of
@@ -88,6 +92,33 @@ def test_a_mission_whose_launcher_is_stopped_ends_by_itself_when_it_cannot_go_on
     summary = mission.finish()
     assert summary["reason"].startswith("the radio process is gone from the bus")
     assert digest(LogFile(mission.out / "mission.mcap")) == summary["digest"]
+
+
+def test_a_process_that_somebody_starts_again_takes_part_as_after_a_restart(
+    mission: Mission,
+) -> None:
+    """As with a container: the same program with the same password, and no launcher that knows it."""
+    pid = mission.children()["robot_agent 3"]
+    words = Path(f"/proc/{pid}/environ").read_text().split("\0")
+    command = Path(f"/proc/{pid}/cmdline").read_text().split("\0")[:-1]
+    lifeline = command.index("--lifeline")
+    os.kill(pid, signal.SIGKILL)
+    again = subprocess.Popen(
+        command[:lifeline] + command[lifeline + 2 :],
+        env=dict(word.split("=", 1) for word in words if "=" in word),
+    )
+    try:
+        summary, said = mission.finish_and_say()
+    finally:
+        again.kill()
+        again.wait()
+    log = LogFile(mission.out / "mission.mcap")
+    assert digest(log) == summary["digest"]
+    assert replay(log).divergences == 0
+    assert "s: restart 3" in said
+    last = list(log.ticks())[-1]
+    present = {one.robot: one.incarnation for one in decode(Truth, last.get("truth") or b"").present}
+    assert present == {1: 0, 2: 0, 3: 1, 4: 0}
 
 
 def test_a_restart_that_nobody_carries_out_ends_the_mission(tmp_path: Path) -> None:
