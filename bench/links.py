@@ -52,7 +52,7 @@ def walk(section: RadioSection, seed: int) -> tuple[FloatArray, FloatArray]:
     steps = np.linspace(NEAREST, FARTHEST, one_way)
     places = np.concatenate((steps, steps[::-1]))
     measured = np.zeros(len(places))
-    outbox = (Transmission(2, b"", MSDU_BYTES),)
+    outbox = (Transmission(2, b"", MSDU_BYTES, 0),)
     requests = (TransmitRequest(1, 0.0, 0.0, outbox), TransmitRequest(2, SPEED, 0.0, ()))
     still = Twist(0.0, 0.0)
     for tick, x in enumerate(places.tolist(), 1):
@@ -128,13 +128,13 @@ def cost(robots: int, section: RadioSection, seconds: int) -> dict[str, float]:
         )
         if robots < 10:
             outboxes = {
-                i: tuple(Transmission(j, b"", MSDU_BYTES) for j in mission.robots if j != i)
+                i: tuple(Transmission(j, b"", MSDU_BYTES, 0) for j in mission.robots if j != i)
                 for i in mission.robots
             }
         elif tick % 40 == 0:
-            outboxes[leader] = tuple(Transmission(i, b"", MSDU_BYTES) for i in followers)
+            outboxes[leader] = tuple(Transmission(i, b"", MSDU_BYTES, 0) for i in followers)
         mission.step(outboxes)
-        outboxes = {i: (Transmission(leader, b"", 60),) for i in followers if mission.received[i]}
+        outboxes = {i: (Transmission(leader, b"", 60, 0),) for i in followers if mission.received[i]}
     return mission.figures()
 
 

@@ -176,7 +176,7 @@ def messages(run: Run) -> dict[str, Any]:
         outboxes: dict[int, list[Transmission]] = {}
         for index in offered.get(tick, ()):
             _, source, destination = run.messages[index]
-            sending = Transmission(destination + 1, b"", run.msdu_bytes)
+            sending = Transmission(destination + 1, b"", run.msdu_bytes, 0)
             outboxes.setdefault(source + 1, []).append(sending)
         requests = tuple(TransmitRequest(i, 0.0, 0.0, tuple(outboxes.get(i, ()))) for i in robots)
         gone = cuts(run, tick * TICK_S)

@@ -13,7 +13,7 @@ from onehop.contracts.messages import Note, Slow, Transmission
 from tests.world.test_world import action, present, world
 from world_server.core.world import World
 
-GREETING = Transmission(0, b"hello", 60)
+GREETING = Transmission(0, b"hello", 60, 0)
 
 
 def driving(ground: World, robot: int, *notes: Note, outbox: bool = False) -> None:
