@@ -25,7 +25,7 @@ ALLOWED = [
         "self._stream.standard_normal(_BLOCK)",
         "rounded to a multiple of 2**-20 at once",
     ),
-    ("medium", ANY, "self._draws.normal()", "the rounded draws of `Draws`, not those of a generator"),
+    ("reception", ANY, "self._draws.normal()", "the rounded draws of `Draws`, not those of a generator"),
     (
         "view",
         "shows",

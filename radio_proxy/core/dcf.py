@@ -157,13 +157,13 @@ class Dcf:
     def _is_cleared(self, exchange: Exchange) -> bool:
         """Judge RTS and CTS of an undisturbed exchange in advance; if one fails, they are played out."""
         medium, rts, fade_db = self.medium, exchange.emission, exchange.fade_db
-        judge, rate_mbps = medium.receivers.judge_alone, rts.rate_mbps
+        judge = medium.receivers.judge_alone
         receiver, sender = rts.receiver, rts.source
-        judged = judge(receiver, rts.row[receiver], fade_db, rate_mbps, rts.bits)
+        judged = judge(receiver, rts.row[receiver], fade_db)
         exchange.judged = (judged,)
         if judged[0] is None:
             mean_db = medium.propagation.mean_snr_row(receiver)[sender]
-            answer = judge(sender, mean_db, fade_db, rate_mbps, 8 * ACK_BYTES)
+            answer = judge(sender, mean_db, fade_db)
             exchange.judged = (judged, answer)
             if answer[0] is None:
                 exchange.judged = ()

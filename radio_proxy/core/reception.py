@@ -115,25 +115,16 @@ class Receivers:
             if station in reception.judged:
                 return reception.judged[station]
             fade_db = self._level_db(emission, station) - mean_db
-        return self.judge_alone(station, mean_db, fade_db, emission.rate_mbps, emission.bits)
+        return self.judge_alone(station, mean_db, fade_db)
 
-    def judge_alone(
-        self, station: StationIndex, mean_db: float, fade_db: float | None, rate_mbps: float, bits: int
-    ) -> Judgement:
-        """A frame that no other overlaps, at a receiver that is free for it."""
+    def judge_alone(self, station: StationIndex, mean_db: float, fade_db: float | None) -> Judgement:
+        """A frame that no other overlaps, at a receiver that is free; only where locks are certain."""
         if mean_db <= SILENT_DB:
             return DeliveryStatus.BELOW_THRESHOLD, SILENT_DB
         if fade_db is None:
             fade_db = self._sigma_db * self._draws.normal() if self._sigma_db else 0.0
         snr_db = mean_db + fade_db - self._propagation.noise_rise_db[station]
-        if snr_db < self._threshold_db:
-            return DeliveryStatus.BELOW_THRESHOLD, snr_db
-        if snr_db >= CERTAIN_SINR_DB:
-            return None, snr_db
-        success = frame_success(HEADER_RATE_MBPS, snr_db, HEADER_BITS)
-        success *= frame_success(rate_mbps, snr_db, bits)
-        lost = self._draws.uniform() >= success
-        return (DeliveryStatus.BIT_ERRORS if lost else None), snr_db
+        return (None if snr_db >= self._threshold_db else DeliveryStatus.BELOW_THRESHOLD), snr_db
 
     def has_received(self, emission: Emission, station: StationIndex) -> bool:
         """Whether a bystander received a frame that has ended."""

@@ -136,6 +136,22 @@ def test_energy_makes_the_medium_busy_if_the_scenario_says_so() -> None:
     assert starts[None] == starts[40.0] < starts[30.0]
 
 
+def test_a_frame_too_weak_for_a_carrier_stops_a_backoff_by_its_energy() -> None:
+    """1 waits out a backoff behind its own broadcast when 0 begins; without detection it goes on."""
+    starts = {}
+    for energy_detect_db in (None, 30.0):
+        section = RadioSection(
+            shadowing_db=0.0, carrier_sense_db=60.0, energy_detect_db=energy_detect_db
+        )
+        cell = Cell([(0, 0), (30, 0)], section)
+        cell.send_at(0, 1, EVERYONE, 100)
+        cell.send_at(100, 1, EVERYONE, 100)
+        cell.send_at(50 + 192 + 8 * 134 + 1, 0, EVERYONE)
+        cell.run(60_000)
+        starts[energy_detect_db] = [now for now, sender, _ in cell.arrived if sender == 1][1]
+    assert starts[None] + 6000 * 1000 < starts[30.0]
+
+
 def test_a_jam_is_energy_and_no_carrier() -> None:
     """It ends in a tick in which nobody transmits, and whoever waited goes on."""
     arrivals = []

@@ -97,6 +97,7 @@ def test_a_preamble_is_detected_by_what_is_on_the_air_when_its_detection_ends() 
     """4 us after its begin: what comes then comes too late to drown it."""
     assert Air(EQUAL).judge((0, 0, 1000), (2, 3, 1003))[0] is COLLISION
     assert Air(EQUAL).judge((0, 0, 1000), (2, 5, 1005))[0] is None
+    assert Air(EQUAL).judge((0, 2, 1002), (2, 0, 5))[0] is None
 
 
 def test_the_receive_threshold_is_asked_of_the_signal_alone() -> None:
@@ -162,5 +163,8 @@ def test_bit_errors_are_what_the_noise_alone_did() -> None:
     weak = {"tx_power_dbm": -25.0, "receive_threshold_db": -9.5}
     places = [(-4.0, 0.0), (0.0, 0.0), (400.0, 0.0)]
     assert Air(places, **weak).judge((0, 0, 7000)) == [None]
+    short = [Air([(-7.5, 0.0), *places[1:]], s, **weak).judge((0, 0, 200))[0] for s in range(400)]
+    header = frame_success(1.0, 12.0 - 17.5012, 48 + 8)
+    assert short.count(None) / 400 == pytest.approx(header, abs=0.02)
     places[0] = (-9.0, 0.0)
     assert Air(places, **weak).judge((0, 0, 7000)) == [ERRORS]
