@@ -103,6 +103,7 @@ class _Reading:
 
     def __init__(self, log: LogFile) -> None:
         self._log = log
+        self._team = frozenset(log.bundle.scenario.team.robots)
         self.count = 0
         self.error: str | None = None
 
@@ -115,7 +116,7 @@ class _Reading:
                     self.count += 1
                     yield last
                 follows = last is not None and logged.tick == last[0].tick + 1
-                last = snapshot(logged, follows), logged.messages
+                last = snapshot(logged, follows, self._team), logged.messages
         except LogError as error:
             self.error = error.problem
         if last is not None and (last[0].is_whole() or not (self._log.torn or self.error)):

@@ -1,11 +1,12 @@
 """One tick of a log as values: what the world said of it, the radio, and every robot.
 
-A message that cannot be read, or lies there twice, is told in `flaws`; of two the first one counts.
+A message that cannot be read, cannot be, or lies there twice is told in `flaws`; of two the first counts.
 """
 
 from dataclasses import dataclass, field
 
 from onehop.checking.findings import Exhibit
+from onehop.checking.sanity import impossible
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import (
@@ -88,8 +89,8 @@ class Snapshot:
         return self.truth is not None and self.record is not None and owed <= said
 
 
-def snapshot(logged: LoggedTick, follows: bool) -> Snapshot:
-    """A tick with its messages decoded."""
+def snapshot(logged: LoggedTick, follows: bool, team: frozenset[int]) -> Snapshot:
+    """A tick with its messages decoded. team: ids of all robots."""
     made = Snapshot(logged.tick, follows)
     seen: set[str] = set()
     for key, data in logged.messages:
@@ -98,7 +99,13 @@ def snapshot(logged: LoggedTick, follows: bool) -> Snapshot:
             continue
         seen.add(key)
         try:
-            made.take(key, decoded(Selected(logged.tick, key, data)))
+            value = decoded(Selected(logged.tick, key, data))
         except DecodeError as error:
             made.flaws.append((key, f"cannot be read: {error}"))
+            continue
+        why = impossible(value, team)
+        if why is None:
+            made.take(key, value)
+        else:
+            made.flaws.append((key, why))
     return made

@@ -19,7 +19,7 @@ from tests.fuzz.sandbox import Child, Ended, Outcome
 SHARES = {"scenario": 3, "map": 3, "log": 1, "message": 3}
 """Of how many cases in ten a kind is; a log takes ten times as long as any other."""
 
-COMMANDS = ("run", "plan", "replay", "explain", "diff", "salvage", "view", "report")
+COMMANDS = ("run", "plan", "replay", "explain", "diff", "salvage", "view", "report", "check")
 """Whose modules are loaded once, before any case."""
 
 GOOD = (Outcome.ACCEPTED, Outcome.REFUSED)

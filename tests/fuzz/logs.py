@@ -37,6 +37,8 @@ class Logs:
         commands: list[tuple[object, ...]] = [
             ("replay", path),
             ("replay", path, "--robot", 3, "--json", "--from", 0.5),
+            ("check", path),
+            ("check", path, "--json"),
             ("explain", path, "--robot", random.choice((1, 2, 3, 4)), "--at", 0.9),
             ("explain", path, "--robot", random.choice((1, 2, 3, 4)), "--at", 1.2, "--json"),
             ("diff", path, recorded),

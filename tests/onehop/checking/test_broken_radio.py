@@ -103,12 +103,53 @@ def claim_another_size(log: Forgery) -> None:
     change_both(log, msdu_bytes=1)
 
 
+def judge_twice(log: Forgery) -> None:
+    tick, _, verdict, _ = first_delivery(log)
+    log.change(tick, "radio", lambda record: record["verdicts"].append(verdict))
+
+
+def claim_another_destination(log: Forgery) -> None:
+    _, _, verdict, _ = first_delivery(log)
+    change_both(log, destination=verdict["destination"] % 4 + 1)
+
+
+def claim_to_have_been_offered_later(log: Forgery) -> None:
+    _, _, verdict, _ = first_delivery(log)
+    change_both(log, offered_ns=verdict["offered_ns"] + 1)
+
+
+def arrive_in_another_tick(log: Forgery) -> None:
+    _, _, verdict, _ = first_delivery(log)
+    change_both(log, arrival_ns=verdict["arrival_ns"] + 50_000_000)
+
+
+def begin_the_way_elsewhere(log: Forgery) -> None:
+    tick, place, verdict, _ = first_delivery(log)
+    way = [verdict["receiver"], verdict["source"]]
+    log.change(tick, "radio", lambda record: record["verdicts"][place].update(path=way))
+
+
 @pytest.mark.parametrize(
     "alter",
-    [deliver_what_was_never_sent, deliver_again, deliver_twice_at_once, arrive_before_the_airtime,
-     go_two_hops_in_the_time_of_one, alter_a_payload, alter_and_say_so, name_another_source,
-     hear_what_nobody_delivered, lose_what_was_delivered, claim_another_size],
-)  # fmt: skip
+    [
+        judge_twice,
+        claim_another_destination,
+        claim_to_have_been_offered_later,
+        arrive_in_another_tick,
+        begin_the_way_elsewhere,
+        deliver_what_was_never_sent,
+        deliver_again,
+        deliver_twice_at_once,
+        arrive_before_the_airtime,
+        go_two_hops_in_the_time_of_one,
+        alter_a_payload,
+        alter_and_say_so,
+        name_another_source,
+        hear_what_nobody_delivered,
+        lose_what_was_delivered,
+        claim_another_size,
+    ],
+)
 def test_what_the_radio_cannot_have_done_is_found(broken: Any, alter: Any) -> None:
     assert set(broken(alter).broken) == {"radio-integrity"}
 

@@ -47,6 +47,18 @@ def misdate_an_observation(log: Forgery) -> None:
     log.change(50, "obs/1", lambda observation: observation.update(time_ns=1))
 
 
+def stand_nowhere(log: Forgery) -> None:
+    log.change(50, "obs/1", lambda observation: observation["pose"].update(heading=float("inf")))
+
+
+def obey_nobody(log: Forgery) -> None:
+    log.say(range(50, 51), 1, members=[])
+
+
+def have_a_stranger(log: Forgery) -> None:
+    log.change(50, "truth", lambda truth: truth["present"][0].update(robot=9))
+
+
 @pytest.mark.parametrize(
     "alter",
     [miss_a_tick, miss_the_last_ticks, double_a_message, double_a_tick, go_back, lose_an_inbox,
@@ -146,6 +158,11 @@ def test_a_dead_robot_that_takes_part_is_found(broken: Any, alter: Any) -> None:
     assert "silence" in found
     assert found <= {"silence", "fault-bit"}
     assert ("fault-bit" in found) is (alter is the_dead_speaks)
+
+
+@pytest.mark.parametrize("alter", [stand_nowhere, obey_nobody, have_a_stranger])
+def test_a_message_that_cannot_be_is_found(broken: Any, alter: Any) -> None:
+    assert "complete" in broken(alter).broken
 
 
 def test_the_message_that_shows_it_is_named(broken: Any) -> None:

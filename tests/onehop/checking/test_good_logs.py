@@ -24,6 +24,7 @@ def test_a_troubled_mission_holds_and_exercises_everything(troubled_log: Path) -
     assert report.checked["re-election"] == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("script", SCRIPTS.values(), ids=SCRIPTS)
 def test_a_mission_with_faults_of_any_kind_holds(tmp_path: Path, script: str) -> None:
     log_of(field(tmp_path, f"faults=[{script}]", "clock.limit_s=12"), tmp_path / "mission.mcap")
