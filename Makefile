@@ -7,7 +7,7 @@ LOWEST_PYTHON ?= python3.11
 LOWEST := .venv-lowest
 LOWEST_STAMP := $(LOWEST)/.installed
 
-.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign bench fuzz compose-demo clean
+.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign bench fuzz compose-demo compose-faults clean
 
 setup: $(STAMP)
 
@@ -63,6 +63,9 @@ bench: setup
 
 fuzz: setup  ## 5,000 mutated scenarios, maps, logs and messages; what went wrong stays in runs/fuzz
 	$(BIN)/python -m tests.fuzz --cases 5000 --seed 1
+
+compose-faults: setup  ## containers killed, paused, restarted and cut off while a mission runs, after compose-demo
+	$(BIN)/python docker/try_faults.py
 
 compose-demo: setup  ## the same mission as containers; makes a local base image where no registry is reached
 	./docker/compose-demo.sh
