@@ -16,6 +16,7 @@ from onehop.contracts.messages import (
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.randomness import generator
 from radio_proxy.core.addresses import RobotId
+from radio_proxy.core.corruption import Corrupter
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
@@ -76,7 +77,8 @@ class Flows:
         propagation = Propagation(link_budget(radio), robots, ())
         propagation.update(presences(run), cuts(run), ())
         draws = Draws(generator(run.seed, "radio"))
-        self.link = LinkLayer(robots, radio, propagation, draws, Deliveries())
+        deliveries = Deliveries(Corrupter(generator(run.seed, "faults")))
+        self.link = LinkLayer(robots, radio, propagation, draws, deliveries)
         self.received = [0] * len(robots)
         self.delays_ms: list[list[float]] = [[] for _ in run.paths]
         self._size = run.msdu_bytes
@@ -130,6 +132,9 @@ class _StaticRouter:
     def on_packet(self, packet: object, sender: RobotId, now: int) -> None:  # noqa: ARG002
         assert isinstance(packet, DataPacket)
         self._flows.on_received(packet, now)
+
+    def on_heard(self, neighbour: RobotId, margin_db: float, now: int) -> None:
+        """Routes do not change."""
 
     def on_overheard(self, packet: object, sender: RobotId, now: int) -> None:
         """Routes do not change."""

@@ -124,13 +124,13 @@ class LinkLayer:
         Differs: whatever else is sent meanwhile is left out, for it did not keep the receiver either.
         """
         source, row = self._robots[sender], self._propagation.mean_snr_row(sender)
-        judge_alone = self._medium.receivers.judge_alone
+        judge = self._medium.receivers.judge_overheard
         bits = 8 * (self._timing.mac_header_bytes + frame.msdu_bytes)
         for robot in robots:
             router, index = self._routers.get(robot), self._index[robot]
             if router is None or not SILENT_DB < row[index] < OWN_DB:
                 continue
-            heard = judge_alone(index, row[index], None, self._timing.rate_mbps, bits)
+            heard = judge(index, row[index], self._timing.rate_mbps, bits)
             if heard[0] is None:
                 router.on_heard(source, heard[1] - self._threshold_db, now)
                 router.on_overheard(frame.packet, source, now)

@@ -126,6 +126,17 @@ class Receivers:
         snr_db = mean_db + fade_db - self._propagation.noise_rise_db[station]
         return (None if snr_db >= self._threshold_db else DeliveryStatus.BELOW_THRESHOLD), snr_db
 
+    def judge_overheard(
+        self, station: StationIndex, mean_db: float, rate_mbps: float, bits: int
+    ) -> Judgement:
+        """A frame that another station received, at one that only listens, with a fading of its own."""
+        cause, snr_db = self.judge_alone(station, mean_db, None)
+        if cause is not None or snr_db >= CERTAIN_SINR_DB:
+            return cause, snr_db
+        success = frame_success(HEADER_RATE_MBPS, snr_db, HEADER_BITS)
+        success *= frame_success(rate_mbps, snr_db, bits)
+        return (None if self._survives(success) else DeliveryStatus.BIT_ERRORS), snr_db
+
     def has_received(self, emission: Emission, station: StationIndex) -> bool:
         """Whether a bystander received a frame that has ended."""
         reception = _reception(emission)

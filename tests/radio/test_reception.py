@@ -168,3 +168,13 @@ def test_bit_errors_are_what_the_noise_alone_did() -> None:
     assert short.count(None) / 400 == pytest.approx(header, abs=0.02)
     places[0] = (-9.0, 0.0)
     assert Air(places, **weak).judge((0, 0, 7000)) == [ERRORS]
+
+
+def test_who_overhears_a_frame_needs_its_bits_as_well() -> None:
+    """At the SNRs of radio cards that receive below 20 dB: 4 % of frames of 6672 bits at -5 dB."""
+    overheard = Air(EQUAL, receive_threshold_db=-9.5).medium.receivers.judge_overheard
+    judged = [overheard(StationIndex(1), -5.0, 1.0, 6672)[0] for _ in range(1000)]
+    assert 15 <= judged.count(None) <= 60
+    assert judged.count(None) + judged.count(ERRORS) == 1000
+    assert overheard(StationIndex(1), -10.0, 1.0, 6672) == (WEAK, -10.0)
+    assert overheard(StationIndex(1), 30.0, 1.0, 6672) == (None, 30.0)
