@@ -1,7 +1,7 @@
 """Messages that no mission can have recorded: numbers that are none, robots that are not in the team.
 
-World and router let none of them pass (docs/limits.md), so a log that holds one was altered. They are told
-as flaws and left out, so that every check can rely on what it gets.
+World and router let none of them pass (docs/limits.md), so a log that holds one was altered. They are
+told as flaws and left out, so that every check can rely on what it gets.
 """
 
 import math
