@@ -65,7 +65,8 @@ def have_a_stranger(log: Forgery) -> None:
 
 @pytest.mark.parametrize(
     "alter",
-    [miss_a_tick, lose_everything, miss_the_last_ticks, double_a_message, double_a_tick, go_back, lose_an_inbox,
+    [miss_a_tick, lose_everything, miss_the_last_ticks,
+     double_a_message, double_a_tick, go_back, lose_an_inbox,
      lose_a_record, spoil_a_message, misdate_an_observation],
 )  # fmt: skip
 def test_what_is_missing_or_there_twice_is_found(broken: Any, alter: Any) -> None:
