@@ -237,6 +237,16 @@ def test_a_fault_without_effect_is_found(broken: Any, alter: Any) -> None:
     assert set(broken(alter).broken) == {"fault-bit"}
 
 
+@pytest.mark.parametrize("alter", [tell("kill", KILL, robots=[4]), tell("restart", RESTART, robots=[4])])
+def test_a_robot_that_departs_and_stays_the_same_is_found(broken: Any, alter: Any) -> None:
+    def depart(log: Forgery) -> None:
+        alter(log)
+        gone = {"robot": 4, "why": "by a fault"}
+        log.change(AT, "truth", lambda truth: truth["departures"].append(gone))
+
+    assert "fault-bit" in broken(depart).broken
+
+
 def test_a_stopped_robot_that_speaks_is_found(broken: Any) -> None:
     found = set(broken(in_force(STOP, "stopped", 1)).broken)
     assert {"fault-bit", "silence"} <= found
