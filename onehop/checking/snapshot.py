@@ -1,7 +1,6 @@
 """One tick of a log as values: what the world said of it, the radio, and every robot.
 
-A message that cannot be read, cannot be, or lies there twice is told in `flaws`; of two the first
-counts.
+A message that cannot be read or cannot be, or lies there twice, is a flaw; of two the first counts.
 """
 
 from dataclasses import dataclass, field

@@ -108,6 +108,12 @@ def judge_twice(log: Forgery) -> None:
     log.change(tick, "radio", lambda record: record["verdicts"].append(verdict))
 
 
+def lose_what_has_arrived(log: Forgery) -> None:
+    tick, _, verdict, _ = first_delivery(log)
+    lost = {**verdict, "status": "below threshold", "arrival_ns": -1}
+    log.change(tick + 1, "radio", lambda record: record["verdicts"].append(lost))
+
+
 def claim_another_destination(log: Forgery) -> None:
     _, _, verdict, _ = first_delivery(log)
     change_both(log, destination=verdict["destination"] % 4 + 1)
@@ -133,6 +139,7 @@ def begin_the_way_elsewhere(log: Forgery) -> None:
     "alter",
     [
         judge_twice,
+        lose_what_has_arrived,
         claim_another_destination,
         claim_to_have_been_offered_later,
         arrive_in_another_tick,
@@ -230,6 +237,16 @@ def test_a_fault_without_effect_is_found(broken: Any, alter: Any) -> None:
     assert set(broken(alter).broken) == {"fault-bit"}
 
 
+@pytest.mark.parametrize("alter", [tell("kill", KILL, robots=[4]), tell("restart", RESTART, robots=[4])])
+def test_a_robot_that_departs_and_stays_the_same_is_found(broken: Any, alter: Any) -> None:
+    def depart(log: Forgery) -> None:
+        alter(log)
+        gone = {"robot": 4, "why": "by a fault"}
+        log.change(AT, "truth", lambda truth: truth["departures"].append(gone))
+
+    assert "fault-bit" in broken(depart).broken
+
+
 def test_a_stopped_robot_that_speaks_is_found(broken: Any) -> None:
     found = set(broken(in_force(STOP, "stopped", 1)).broken)
     assert {"fault-bit", "silence"} <= found
@@ -254,6 +271,10 @@ def jam_too_long(log: Forgery) -> None:
     log.change(KILLED, "truth", lambda truth: truth.update(jams=jam))
 
 
-@pytest.mark.parametrize("alter", [heal_too_early, hold_too_long, jam_too_long])
+def leave_without_a_word(log: Forgery) -> None:
+    log.change(KILLED, "truth", lambda truth: truth.update(departures=[]))
+
+
+@pytest.mark.parametrize("alter", [heal_too_early, hold_too_long, jam_too_long, leave_without_a_word])
 def test_a_fault_that_begins_or_ends_at_another_tick_is_found(broken: Any, alter: Any) -> None:
     assert "fault-bit" in broken(alter, "troubled").broken

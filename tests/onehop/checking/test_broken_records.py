@@ -19,6 +19,10 @@ def miss_the_last_ticks(log: Forgery) -> None:
     del log.ticks[-5:]
 
 
+def lose_everything(log: Forgery) -> None:
+    log.ticks.clear()
+
+
 def double_a_message(log: Forgery) -> None:
     log.add(50, "out/3", log.get(50, "out/3"))
 
@@ -61,7 +65,8 @@ def have_a_stranger(log: Forgery) -> None:
 
 @pytest.mark.parametrize(
     "alter",
-    [miss_a_tick, miss_the_last_ticks, double_a_message, double_a_tick, go_back, lose_an_inbox,
+    [miss_a_tick, lose_everything, miss_the_last_ticks,
+     double_a_message, double_a_tick, go_back, lose_an_inbox,
      lose_a_record, spoil_a_message, misdate_an_observation],
 )  # fmt: skip
 def test_what_is_missing_or_there_twice_is_found(broken: Any, alter: Any) -> None:
@@ -101,6 +106,11 @@ def speak_as_another_process(log: Forgery) -> None:
     log.change(50, "out/3", lambda action: action.update(incarnation=1))
 
 
+def speak_as_another_process_at_the_end(log: Forgery) -> None:
+    """No truth follows that would show it."""
+    log.change(119, "out/3", lambda action: action.update(incarnation=1))
+
+
 def pass_on_something_else(log: Forgery) -> None:
     log.change(50, "truth", lambda truth: truth["transmit_requests"][0].update(speed=0.123))
 
@@ -122,7 +132,8 @@ def speak_for_each_other(log: Forgery) -> None:
 
 @pytest.mark.parametrize(
     "alter",
-    [speak_as_another_process, pass_on_something_else, pass_on_nothing, see_with_other_eyes,
+    [speak_as_another_process, speak_as_another_process_at_the_end, pass_on_something_else,
+     pass_on_nothing, see_with_other_eyes,
      speak_for_each_other],
 )  # fmt: skip
 def test_words_in_another_s_name_are_found(broken: Any, alter: Any) -> None:
