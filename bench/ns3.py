@@ -16,7 +16,6 @@ import hashlib
 import json
 import os
 import platform
-import shlex
 import sys
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
@@ -88,12 +87,11 @@ def say(text: str) -> None:
 
 
 def tabulated(options: argparse.Namespace, rows: list[Row], versions: set[str]) -> str:
-    """The tables under a line that says when, with what and by which command."""
-    command = shlex.join(["python", "bench/ns3.py", *sys.argv[1:]])
+    """The tables under a line that says when, with what, and from how many seeds."""
     python, peer = platform.python_version(), ", ".join(sorted(versions))
     about = (
         f"{datetime.now(UTC):%Y-%m-%d}: Onehop {onehop.__version__} on Python {python}, ns-3 {peer}, "
-        f"{options.seeds} seeds a case:\n\n    {command}\n\n"
+        f"{options.seeds} seeds a case.\n\n"
     )
     return about + "\n".join(markdown(rows))
 

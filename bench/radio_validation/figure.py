@@ -23,7 +23,7 @@ def draw(rows: Sequence[Row], path: Path) -> None:
     for axes, groups in zip(figure.subplots(1, 2), COLUMNS, strict=True):
         _panel(axes, [row for group in groups for row in rows if row.group == group])
     figure.suptitle("Throughput of Onehop by that of ns-3, 95 % interval", color=INK)
-    with mpl.rc_context({"svg.hashsalt": "onehop"}):
+    with mpl.rc_context({"svg.hashsalt": "onehop", "svg.fonttype": "none"}):
         figure.savefig(path, metadata={"Date": None})
 
 
