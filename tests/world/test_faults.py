@@ -187,6 +187,38 @@ def test_a_fault_follows_an_event_by_its_delay_and_concerns_who_did_it() -> None
     assert ground.truth().faults == (FaultSection("kill", 0.2, robots=(2,)),)
 
 
+def test_faults_that_begin_together_do_so_in_the_order_of_the_script() -> None:
+    ground = world(
+        FaultSection("heal", on="narrow"), FaultSection("hold", 0.05, robots=(1,), duration_s=1.0)
+    )
+    driving(ground, 1, Note("narrow", {}))
+    assert [fault.kind for fault in ground.truth().faults] == ["heal", "hold"]
+    assert ground.truth().present[0].held
+
+
+def test_a_robot_that_leads_again_after_its_restart_is_elected_again() -> None:
+    ground = world(
+        FaultSection("restart", 0.05, robots=(1,)), FaultSection("hold", on="leader elected", nth=2)
+    )
+    driving(ground, 1)
+    leads = replace(action(incarnation=1), tick=ground.tick)
+    ground.advance({1: replace(leads, status=replace(leads.status, leader=1))})
+    assert ground.truth().present[0].held
+
+
+def test_what_a_slow_robot_owes_when_it_is_stopped_comes_when_it_goes_on() -> None:
+    ground = world(
+        FaultSection("slow", 0.0, robots=(1,), delay_ticks=1),
+        FaultSection("stop", 0.05, robots=(1,), duration_s=0.1),
+    )
+    moves = []
+    driving(ground, 1)
+    for _ in range(3):
+        moves.append(ground.truth().present[0].twist.v)
+        ground.advance({})
+    assert [*moves, ground.truth().present[0].twist.v] == [0.0, 0.0, 0.0, 1.0]
+
+
 @pytest.mark.parametrize(
     ("event", "note"),
     [

@@ -87,7 +87,7 @@ def test_the_goal_is_reached_by_its_leader_only() -> None:
 def test_a_team_that_stopped_elsewhere_has_failed_for_the_reason_it_gives() -> None:
     referee = Referee(PLAN)
     referee.on_notes(2, (Note("replanned", {}), Note("no_way_to_the_goal", {})))
-    referee.on_notes(2, (Note("mode", {"to": "stopped"}),))
+    referee.on_notes(2, (Note("mode", {"to": "stopped"}), Note("garbled", {"robots": (1,)})))
     referee.on_notes(3, (Note("set_up", {}),))
     far = {robot: (10.0 + robot, 10.0) for robot in TEAM}
     outcome = judge(referee, *(at(tick, far, all_stopped()) for tick in range(41)))
