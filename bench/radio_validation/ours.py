@@ -1,6 +1,5 @@
 """The same runs on Onehop. Frames: its link layer with static routes; messages: `Radio`, in ticks."""
 
-from dataclasses import fields
 from typing import Any
 
 from onehop.contracts.briefings import RadioBriefing
@@ -34,20 +33,18 @@ ROUTING = {"aodv": "mrdv", "aodv with hellos": "mrdv", "dsr": "mrsr", "": "direc
 
 def section(run: Run) -> RadioSection:
     """The radio of a run: 28 B header, and the standard read as ns-3 reads it."""
-    settings: dict[str, Any] = {
-        "mac_header_bytes": 28,
-        "rate_mbps": run.rate_mbps,
-        "rts_threshold_bytes": run.rts_threshold_bytes,
-        "shadowing_db": run.fading_db,
-        "receive_threshold_db": run.receive_threshold_db,
-        "carrier_sense_db": run.carrier_sense_db,
-        "energy_detect_db": run.carrier_sense_db,
-        "preamble_sinr_db": run.preamble_sinr_db,
-        "routing": ROUTING[run.protocol],
-        "as_ns3": True,
-    }
-    known = {field.name for field in fields(RadioSection)}
-    return RadioSection(**{key: value for key, value in settings.items() if key in known})
+    return RadioSection(
+        mac_header_bytes=28,
+        rate_mbps=run.rate_mbps,
+        rts_threshold_bytes=run.rts_threshold_bytes,
+        shadowing_db=run.fading_db,
+        receive_threshold_db=run.receive_threshold_db,
+        carrier_sense_db=run.carrier_sense_db,
+        energy_detect_db=run.carrier_sense_db,
+        preamble_sinr_db=run.preamble_sinr_db,
+        routing=ROUTING[run.protocol],
+        as_ns3=True,
+    )
 
 
 def presences(run: Run) -> tuple[Presence, ...]:

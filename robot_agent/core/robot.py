@@ -50,6 +50,7 @@ class Robot:
         self._error = 0.0
         self._target = (0.0, 0.0)
         self._remaining = 0.0
+        self._heading = math.nan
         self._notes: tuple[Note, ...] = ()
         self._reset_gain()
 
@@ -70,7 +71,9 @@ class Robot:
         else:
             twist = self._follow(protocol, part.leader, pose, scan, nearest)
         leads = isinstance(part, Leading)
-        if not (leads and protocol.state.mode is Mode.SETUP and twist.w):
+        turns = twist.w != 0.0 and pose.heading != self._heading  # or is held, and has to speak
+        self._heading = pose.heading
+        if not (leads and protocol.state.mode is Mode.SETUP and turns):
             told = self._told_pose(protocol, pose) if leads else pose
             protocol.speak(now_ns, told, self._motion.trail.points)
         return Action(

@@ -97,6 +97,15 @@ def test_leader_after_leader_dies_and_the_rest_re_forms_and_arrives(open_field):
     assert outcome.collisions == 0
 
 
+def test_a_leader_that_is_held_while_it_turns_to_the_goal_still_says_so(open_field):
+    """A silent one was given up, and the team had two leaders from then on."""
+    held = fault("hold", 0.1, 3, duration_s=15)
+    outcome, diary = mission(open_field, "clock.limit_s=25.0", faults=(held,))
+    assert outcome.outcome == "failed", "the limit"
+    for second in range(1, 25):
+        assert diary.leaders(second) == [3]
+
+
 @pytest.mark.parametrize("profile", ["team", "thesis"])
 def test_a_leader_cut_off_for_good_stands_on_the_goal_and_the_others_arrive_beside_it(
     open_field, profile
