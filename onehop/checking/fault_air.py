@@ -81,7 +81,7 @@ class FaultyAir:
         x, y = here.pose.x, here.pose.y
         rise_db = min(self._budget.jam_rise_db(one, x, y) for one in (truth, self._before))
         distance = math.hypot(x - there.pose.x, y - there.pose.y)
-        fade_db = SIGMAS * self._budget.shadowing_db + MARGIN_DB
+        fade_db = SIGMAS * self._budget.shadowing_db + self._budget.best_db + MARGIN_DB
         most_db = self._budget.mean_snr_at(distance) - rise_db + fade_db
         if rise_db > 0.0 and verdict.snr_db > most_db:
             what = (

@@ -1,8 +1,9 @@
 """Who could hear whom, from poses, cuts, jams and what became of messages: path loss worked out anew.
 
-Two running robots, neither of them slow, are **linked** while each receives the other, on the mean and
-with its jams, at least MARGIN_DB above the receive threshold, no cut lies between them, and no message
-between them is lost or late. They are **apart** when no fading could carry a frame between them.
+Two running robots, neither of them slow, are **linked** while each receives the other, on the mean, with
+its jams and at the worst of places, at least MARGIN_DB above the receive threshold, no cut lies between
+them, and no message between them is lost or late. They are **apart** when no fading and no place could
+carry a frame between them.
 
 Mean SNR at distance d (thesis 3.7.1): Pt + 2G - L - FSPL(d0) - 10 n log10(d / d0) - noise, and a jam
 raises the noise. Walls that weaken signals (wall_loss_db) are not looked at: what crosses one may be
@@ -10,6 +11,7 @@ lost, and a message that is lost ends a link here.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,12 +26,32 @@ MARGIN_DB = 4.0
 FARTHEST_FADE_DB = 24.0
 """No fading carries a frame over more: six standard deviations of the thesis's [dB]."""
 
-_LIGHT_SPEED = 3.0e8
-_PRESET = {"thesis": (23.0103, 2.0, -77.0357), "physical": (15.0, 2.6, -93.55)}
-"""Power [dBm], exponent, noise [dBm]: 0.2 W with 60 dB at 1 m, and kTB + 7 dB (thesis 3.7; docs)."""
+PLACE_SIGMAS = 3.0
+"""Shadowing between places is held within so many standard deviations (docs/links.md)."""
 
-_THRESHOLD_DB = 32.0
-_SHADOWING_DB = 4.0
+FAST_FADE_DB = 12.0
+"""What many paths add at most to the mean [dB]: more than that has a probability of 1e-7."""
+
+_LIGHT_SPEED = 3.0e8
+
+
+class _Preset(NamedTuple):
+    """Power and noise [dBm], exponent, threshold, fading of frames and of places [dB]."""
+
+    power: float
+    exponent: float
+    noise: float
+    threshold: float = 32.0
+    shadowing: float = 4.0
+    spatial: float = 0.0
+
+
+_PRESET = {
+    "thesis": _Preset(23.0103, 2.0, -77.0357),
+    "physical": _Preset(15.0, 2.6, -93.55),
+    "indoor": _Preset(15.0, 2.4, -93.55, threshold=0.0, shadowing=0.6, spatial=9.0),
+}
+"""0.2 W with 60 dB at 1 m, and kTB + 7 dB (thesis 3.7; docs/links.md)."""
 
 
 def _given(value: float | None, default: float) -> float:
@@ -37,18 +59,23 @@ def _given(value: float | None, default: float) -> float:
 
 
 class Budget:
-    """Mean SNR under one radio section. shadowing_db: standard deviation of its fading."""
+    """Mean SNR under one radio section. shadowing_db: standard deviation of the fading of frames.
+
+    worst_place_db, best_db: what places take away at most, and what places and many paths add at most.
+    """
 
     def __init__(self, radio: RadioSection) -> None:
-        power, exponent, noise = _PRESET[radio.preset]
-        self.noise_dbm = _given(radio.noise_dbm, noise)
-        self.exponent = _given(radio.path_loss_exponent, exponent)
-        self.threshold_db = _given(radio.receive_threshold_db, _THRESHOLD_DB)
-        self.shadowing_db = _given(radio.shadowing_db, _SHADOWING_DB)
+        preset = _PRESET[radio.preset]
+        self.noise_dbm = _given(radio.noise_dbm, preset.noise)
+        self.exponent = _given(radio.path_loss_exponent, preset.exponent)
+        self.threshold_db = _given(radio.receive_threshold_db, preset.threshold)
+        self.shadowing_db = _given(radio.shadowing_db, preset.shadowing)
+        self.worst_place_db = PLACE_SIGMAS * _given(radio.spatial_shadowing_db, preset.spatial)
+        self.best_db = self.worst_place_db + (0.0 if radio.fast_fading == "none" else FAST_FADE_DB)
         self.nearest = radio.reference_distance
         loss = 20.0 * math.log10(4.0 * math.pi * self.nearest * radio.frequency_hz / _LIGHT_SPEED)
         gain = 2.0 * radio.antenna_gain_dbi - radio.system_loss_db
-        self.reference_db = _given(radio.tx_power_dbm, power) + gain - loss - self.noise_dbm
+        self.reference_db = _given(radio.tx_power_dbm, preset.power) + gain - loss - self.noise_dbm
 
     def mean_snr_db(self, distances: FloatArray) -> FloatArray:
         """Without walls, at distances [m] of any shape."""
@@ -109,8 +136,10 @@ class Links:
             if not cut.one_way:
                 snr[np.ix_(side_b, side_a)] = -np.inf
         weakest = np.minimum(snr, snr.T)
-        linked = weakest >= self._budget.threshold_db + MARGIN_DB
-        self.apart = np.maximum(snr, snr.T) < self._budget.threshold_db - FARTHEST_FADE_DB
+        budget = self._budget
+        linked = weakest - budget.worst_place_db >= budget.threshold_db + MARGIN_DB
+        strongest = np.maximum(snr, snr.T) + budget.best_db
+        self.apart = strongest < budget.threshold_db - FARTHEST_FADE_DB
         changed = incarnation != self._incarnation
         self._incarnation = incarnation
         if not now.follows:

@@ -40,7 +40,7 @@ def quiet_log(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def troubled_log(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """280 ticks; nobody may write to it."""
     folder = tmp_path_factory.mktemp("troubled")
-    log_of(field(folder, *QUICK[:2], "clock.limit_s=14", TROUBLES), folder / "mission.mcap")
+    log_of(field(folder, *QUICK[:2], "clock.limit_s=14", "seed=5", TROUBLES), folder / "mission.mcap")
     return folder / "mission.mcap"
 
 

@@ -10,7 +10,7 @@ from onehop.checking.rosters import Roster, is_newer, shape_for
 from onehop.contracts.geometry import Pose
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.serial_numbers import newer
-from radio_proxy.core.link_budget import link_budget
+from radio_proxy.core.link_budget import CLIP, link_budget
 from robot_agent.core.team import team_messages
 from robot_agent.core.team.formation import median_leader, shape_of
 from robot_agent.core.team.roster import Roster as TeamRoster
@@ -41,12 +41,23 @@ def test_order_of_rosters_within_an_epoch() -> None:
             assert Roster(1, one).is_larger(Roster(1, other)) is beats
 
 
-@pytest.mark.parametrize("preset", ["thesis", "physical"])
+@pytest.mark.parametrize("preset", ["thesis", "physical", "indoor"])
 def test_mean_snr_over_distance(preset: str) -> None:
     section = RadioSection(preset=preset, antenna_gain_dbi=2.0, reference_distance=2.0)  # type: ignore[arg-type]
     distances = np.array([0.5, 2.0, 8.0, 25.0, 300.0])
     expected = [link_budget(section).mean_snr_db(distance) for distance in distances.tolist()]
     assert Budget(section).mean_snr_db(distances) == pytest.approx(expected, abs=0.01)
+    programs, checkers = link_budget(section), Budget(section)
+    assert checkers.threshold_db == programs.receive_threshold_db
+    assert checkers.shadowing_db == programs.shadowing_db
+    assert checkers.worst_place_db == CLIP * programs.spatial_shadowing_db
+
+
+def test_what_places_and_paths_add_at_most() -> None:
+    places = Budget(RadioSection(spatial_shadowing_db=5.0))
+    assert (places.worst_place_db, places.best_db) == (15.0, 15.0)
+    both = Budget(RadioSection(spatial_shadowing_db=5.0, fast_fading="rayleigh"))
+    assert (both.worst_place_db, both.best_db) == (15.0, 27.0)
 
 
 @pytest.mark.parametrize(
