@@ -7,10 +7,11 @@ import pytest
 from msgspec.structs import replace
 
 from onehop.contracts.errors import ScenarioError
-from onehop.contracts.fault_section import FaultSection
+from onehop.contracts.fault_section import FaultKind, FaultSection
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Note, Slow, Transmission
 from tests.world.test_world import action, present, world
+from world_server.core.faults import Faults
 from world_server.core.world import World
 
 GREETING = Transmission(0, b"hello", 60, 0)
@@ -185,6 +186,25 @@ def test_a_fault_follows_an_event_by_its_delay_and_concerns_who_did_it() -> None
     ground.advance({})
     assert present(ground) == [1, 3]
     assert ground.truth().faults == (FaultSection("kill", 0.2, robots=(2,)),)
+
+
+def test_a_new_process_is_not_slow_any_more() -> None:
+    ground = world(
+        FaultSection("slow", 0.0, robots=(1, 2), delay_ticks=9),
+        FaultSection("restart", 0.05, robots=(1,)),
+    )
+    ground.advance({})
+    assert ground.truth().slow == (Slow(2, 9),)
+
+
+@pytest.mark.parametrize("kind", ["hold", "stop"])
+def test_who_will_go_on_by_itself_rests_and_who_will_not_does_not(kind: FaultKind) -> None:
+    faults = Faults((), (1, 2, 3))
+    for one in (
+        FaultSection(kind, 0.0, robots=(1, 2), duration_s=1.0), FaultSection(kind, 0.0, robots=(2, 3))
+    ):  # fmt: skip
+        faults.begin(one, 0)
+    assert faults.resting == {1}
 
 
 def test_faults_that_begin_together_do_so_in_the_order_of_the_script() -> None:
