@@ -188,7 +188,7 @@ class World:
     def _kidnap(self, robot: int, fault: FaultSection) -> None:
         """Put the body of a robot elsewhere, at rest."""
         row = self._row[robot]
-        bodies = np.delete(self._poses[:, :2], row, axis=0)
+        bodies = self._poses[[other for other in self._row.values() if other != row], :2]
         apart = 2.0 * self._body.radius
         self._poses[row] = landing(fault, self._walls, self._inflation, bodies, apart)
         self._twists[row] = 0.0

@@ -103,7 +103,7 @@ def test_a_log_of_another_wire_version_is_refused_by_name(
     path = tmp_path / "new.mcap"
     monkeypatch.setattr("onehop.wire.log_writer.WIRE_VERSION", 99)
     LogWriter(path, field(tmp_path), "inline").close(None)
-    with pytest.raises(LogError, match=r"wire schema version 99; this program reads version 2"):
+    with pytest.raises(LogError, match=r"wire schema version 99; this program reads version 3"):
         LogFile(path)
 
 
