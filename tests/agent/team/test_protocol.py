@@ -303,8 +303,9 @@ def test_foreign_and_hostile_payloads_are_counted_and_ignored():
         assert (after.epoch, after.members, after.mode) == (0, before[i].members, before[i].mode)
         counters = net.members[i].robot.ignored
         assert counters["garbled"] == 1
-        told = [note.data for _, robot, note in net.notes if (robot, note.kind) == (i, "garbled")]
-        assert told == [{"robots": (3,)}]
+        assert [n.data for _, robot, n in net.notes if (robot, n.kind) == (i, "garbled")] == [
+            {"robots": (3,)}
+        ]
         assert counters["foreign"] >= 3
 
 
