@@ -123,7 +123,7 @@ class LinkLayer:
 
         Differs: whatever else is sent meanwhile is left out, for it did not keep the receiver either.
         """
-        source, row = self._robots[sender], self._propagation.mean_snr_row(sender)
+        source, row = self._robots[sender], self._propagation.snr_row(sender, now)
         judge = self._medium.receivers.judge_overheard
         bits = 8 * (self._timing.mac_header_bytes + frame.msdu_bytes)
         for robot in robots:
