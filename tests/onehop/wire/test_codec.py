@@ -45,7 +45,7 @@ notes = st.builds(
         st.text(max_size=5), st.one_of(counts, numbers, st.text(max_size=5), teams), max_size=3
     ),
 )
-transmissions = st.builds(Transmission, ids, st.binary(max_size=60), counts)
+transmissions = st.builds(Transmission, ids, st.binary(max_size=60), counts, counts)
 actions = st.builds(
     Action,
     counts,
