@@ -11,7 +11,7 @@ from onehop.contracts.ranges import out_of_range
 from onehop.wire.logged import TickMessage
 
 MOST = 1e9
-"""Beyond any metre or decibel that a mission has."""
+"""Beyond any metre, decibel or number of restarts that a mission has."""
 
 
 def impossible(value: TickMessage, team: frozenset[int]) -> str | None:
@@ -34,6 +34,8 @@ def _wrong_truth(truth: Truth, team: frozenset[int]) -> str | None:
     for one in truth.present:
         if one.robot not in team:
             return f"has robot {one.robot}, which is not in the team"
+        if not 0 <= one.incarnation <= MOST:
+            return f"has robot {one.robot} for the {one.incarnation}th time"
         if not _are_sound(one.pose.x, one.pose.y, one.pose.heading):
             return f"has robot {one.robot} nowhere"
     for jam in truth.jams:

@@ -91,10 +91,14 @@ class Messages:
             data = msgpack.packb([encode(truth) for truth in self._truths(random)])
         else:
             data = random.choice(self._known[name])
+            if name == _PAYLOAD:
+                data = data[: -team_messages.CHECKSUM_BYTES]
             if random.random() < 0.6:
                 data = with_extreme(data, random)
             if random.random() < 0.4:
                 data = damaged(data, self._known[random.choice(list(self._known))], random)
+            if name == _PAYLOAD and random.random() < 0.9:
+                data = team_messages.sealed(data)
         (folder / f"{name}.bin").write_bytes(data)
 
     def read(self, folder: Path) -> None:

@@ -171,7 +171,11 @@ def test_a_dead_robot_that_takes_part_is_found(broken: Any, alter: Any) -> None:
     assert ("fault-bit" in found) is (alter is the_dead_speaks)
 
 
-@pytest.mark.parametrize("alter", [stand_nowhere, obey_nobody, have_a_stranger])
+def return_too_often(log: Forgery) -> None:
+    log.change(50, "truth", lambda truth: truth["present"][0].update(incarnation=2**63))
+
+
+@pytest.mark.parametrize("alter", [stand_nowhere, obey_nobody, have_a_stranger, return_too_often])
 def test_a_message_that_cannot_be_is_found(broken: Any, alter: Any) -> None:
     assert "complete" in broken(alter).broken
 

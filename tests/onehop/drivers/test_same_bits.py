@@ -25,7 +25,7 @@ LIKE_AN_OLD_PROCESSOR = {
 
 EVERYTHING = """
 name = "everything"
-seed = 2
+seed = 3
 faults = [{ kind = "kill", at_s = 50, robots = [3] }]
 [map]
 width = 50
