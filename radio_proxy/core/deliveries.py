@@ -99,7 +99,7 @@ class Deliveries:
     def record(self, data: DataPacket, receiver: RobotId, status: DeliveryStatus, arrival: int) -> None:
         """The verdict on a message and one receiver; arrival: -1 when it was lost [ns]."""
         message, payload = data.message, data.message.payload
-        if status is DeliveryStatus.DELIVERED:
+        if status is DeliveryStatus.DELIVERED and (self._corrupter.in_force or self.stopped):
             payload = self._corrupter.received(receiver, payload)
             if payload != message.payload:
                 status = DeliveryStatus.CORRUPTED
@@ -107,7 +107,7 @@ class Deliveries:
                 status, arrival = DeliveryStatus.QUEUE_FULL, -1
         verdict = message.verdict(data, receiver, status, arrival)
         self._verdicts.append(verdict)
-        if status in (DeliveryStatus.DELIVERED, DeliveryStatus.CORRUPTED):
+        if status is DeliveryStatus.DELIVERED or status is DeliveryStatus.CORRUPTED:
             reception = Reception(
                 source=message.source,
                 payload=payload,

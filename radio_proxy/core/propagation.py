@@ -102,7 +102,9 @@ class Propagation:
 
     def snr_row(self, sender: StationIndex, now: int) -> list[float]:
         """SNR at every station of what `sender` begins to emit now [dB]."""
-        row = self.mean_snr_row(sender)
+        row = None if self._stale else self._rows.get(sender)
+        if row is None:
+            row = self.mean_snr_row(sender)
         if self._fast_fading is None:
             return row
         gains = self._fast_fading.row_db(sender, now)
