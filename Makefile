@@ -35,7 +35,7 @@ slow: setup
 	$(BIN)/pytest -q -m 'slow and not live and not campaign'
 
 live: setup
-	$(BIN)/pytest -q -m live
+	$(BIN)/pytest -q -m 'live and not campaign'
 
 lowest: $(LOWEST_STAMP)  ## the fast tests with the lowest Python and the lowest versions that are promised
 	NUMBA_CACHE_DIR=$(LOWEST)/compiled $(LOWEST)/bin/pytest -q -m 'not slow and not live'

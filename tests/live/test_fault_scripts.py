@@ -16,7 +16,17 @@ from tests.onehop.scenes import field, log_of
 pytestmark = pytest.mark.live
 
 
-@pytest.mark.parametrize("script", SCRIPTS.values(), ids=SCRIPTS)
+IN_CI = {"kill", "stop", "on an event", "corrupt", "slow"}
+"""The others take a minute, and the campaign has them: every kind is tried inline in CI."""
+
+
+@pytest.mark.parametrize(
+    "script",
+    [
+        pytest.param(script, id=name, marks=[] if name in IN_CI else [pytest.mark.campaign])
+        for name, script in SCRIPTS.items()
+    ],
+)
 def test_a_script_leaves_the_same_bytes_in_processes_as_in_one(tmp_path: Path, script: str) -> None:
     settings = (f"faults=[{script}]", "clock.limit_s=10")
     inline = log_of(field(tmp_path, *settings), tmp_path / "inline.mcap")

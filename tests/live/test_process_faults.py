@@ -121,6 +121,7 @@ def test_a_process_that_somebody_starts_again_takes_part_as_after_a_restart(
     assert present == {1: 0, 2: 0, 3: 1, 4: 0}
 
 
+@pytest.mark.campaign
 def test_a_restart_that_nobody_carries_out_ends_the_mission(tmp_path: Path) -> None:
     restart = "faults=[{kind='restart', at_s=12, robots=[2]}]"
     mission = Mission(tmp_path, restart, LIMIT, "robot.leader_speed=0.2")
