@@ -13,7 +13,7 @@ from onehop.contracts.errors import OnehopError
 from tests.fuzz.fuzzer import GOOD, Fuzzer, jobs_of_this_machine
 from tests.fuzz.sandbox import MEMORY_BYTES, Child, Outcome
 
-CASES = {"scenario": 60, "map": 60, "message": 60, "log": 150}
+CASES = {"scenario": 60, "map": 60, "message": 60, "log": 80}
 SEED = 1
 
 

@@ -104,6 +104,7 @@ def test_a_program_that_is_to_outlive_its_terminal_does(start: Start) -> None:
     assert mission.finish()["reason"] == "time limit of 5 s"
 
 
+@pytest.mark.campaign
 def test_a_killed_launcher_leaves_no_file_and_its_folder_free(start: Start, tmp_path: Path) -> None:
     mission = start("clock.limit_s=60")
     mission.await_child("world_server")
@@ -190,7 +191,9 @@ def test_a_launcher_that_was_stopped_for_a_while_sees_the_mission_to_its_end(
     assert summary["digest"] == log_of(field(tmp_path, "clock.limit_s=20"), tmp_path / "inline.mcap")
 
 
-@pytest.mark.parametrize("wait_s", [0.0, 0.4, 0.8, 1.6])
+@pytest.mark.parametrize(
+    "wait_s", [0.0, 0.8, *(pytest.param(wait_s, marks=pytest.mark.campaign) for wait_s in (0.4, 1.6))]
+)
 def test_a_world_that_is_stopped_in_its_start_ends_the_mission(start: Start, wait_s: float) -> None:
     mission = start("clock.limit_s=600")
     world = mission.await_child("world_server")

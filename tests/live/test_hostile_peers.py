@@ -117,6 +117,7 @@ def test_a_peer_that_asks_without_end_keeps_nobody_from_being_answered(house: Ho
     assert house.reaches_the_honest(SOON_S)
 
 
+@pytest.mark.campaign
 def test_hundreds_of_silent_connections_keep_nobody_out(house: House) -> None:
     host, port = house.endpoint.removeprefix("tcp/").split(":")
     with ExitStack() as stack:

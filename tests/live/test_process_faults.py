@@ -40,6 +40,7 @@ def state(pid: int) -> str:
     return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0]
 
 
+@pytest.mark.campaign
 def test_a_pause_that_is_shorter_than_the_lease_changes_nothing(
     mission: Mission, tmp_path: Path
 ) -> None:

@@ -14,7 +14,7 @@ from tests.live.mission import Mission, proven
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
 
-KILLS = int(os.environ.get("ONEHOP_RECORDER_KILLS", "4"))
+KILLS = int(os.environ.get("ONEHOP_RECORDER_KILLS", "2"))
 """How many instants are tried; 40 take some minutes."""
 
 ALLOWED_LOSS = 5
