@@ -16,6 +16,9 @@ from tests.onehop.scenes import FIELD
 
 DEADLINE_S = 120.0
 
+STARTED: "list[Mission]" = []
+"""Missions of the test that runs: what it leaves running ends with it (conftest.py)."""
+
 
 class Mission:
     """`onehop run` of the small scene in a child, with its log growing in `out`.
@@ -55,6 +58,7 @@ class Mission:
             start_new_session=True,
             env={**os.environ, **(environment or {})},
         )
+        STARTED.append(self)
 
     def finish(self) -> dict[str, Any]:
         """The summary; the child's own end is part of what is tested."""

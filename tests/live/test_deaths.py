@@ -6,7 +6,6 @@ Every log that such a mission leaves is re-executed.
 import os
 import signal
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -33,12 +32,8 @@ NAMES = {
 
 
 @pytest.fixture
-def mission(tmp_path: Path) -> Iterator[Mission]:
-    running = Mission(tmp_path, "clock.limit_s=60")
-    yield running
-    if running.child.poll() is None:
-        running.child.kill()
-    running.child.communicate()
+def mission(tmp_path: Path) -> Mission:
+    return Mission(tmp_path, "clock.limit_s=60")
 
 
 def _replayed(mission: Mission) -> LogFile:

@@ -6,7 +6,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -29,21 +29,15 @@ Start = Callable[..., Mission]
 
 
 @pytest.fixture
-def start(tmp_path: Path) -> Iterator[Start]:
-    """Starts missions that do not outlive the test; their temporary files have a folder of their own."""
-    started: list[Mission] = []
+def start(tmp_path: Path) -> Start:
+    """Starts missions whose temporary files have a folder of their own."""
     (tmp_path / "temporary").mkdir()
 
     def begin(*settings: str, **options: Any) -> Mission:
         environment = {"TMPDIR": str(tmp_path / "temporary"), **options.pop("environment", {})}
-        started.append(Mission(tmp_path, *settings, environment=environment, **options))
-        return started[-1]
+        return Mission(tmp_path, *settings, environment=environment, **options)
 
-    yield begin
-    for one in started:
-        if one.child.poll() is None:
-            one.child.kill()
-        one.child.communicate()
+    return begin
 
 
 def _end(mission: Mission) -> tuple[int, str]:

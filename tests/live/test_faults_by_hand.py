@@ -6,7 +6,6 @@ import re
 import signal
 import subprocess
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -34,14 +33,11 @@ def _own_list(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture
-def mission(tmp_path: Path) -> Iterator[Mission]:
+def mission(tmp_path: Path) -> Mission:
     """One that lasts as long as tests need it: its leader creeps."""
     running = Mission(tmp_path, *SLOWLY, "clock.limit_s=600")
     running.await_ticks()
-    yield running
-    if running.child.poll() is None:
-        running.child.kill()
-    running.child.communicate()
+    return running
 
 
 def onehop(*arguments: str) -> subprocess.CompletedProcess[str]:

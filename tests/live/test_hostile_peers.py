@@ -161,8 +161,11 @@ def _identity(pid: int) -> tuple[str, str, str]:
 
 
 def test_a_mission_goes_on_whatever_a_second_session_of_a_robot_does(tmp_path: Path) -> None:
-    """One that takes the place of a dead robot, too: it asks 20,000 times and reads nothing."""
-    mission = Mission(tmp_path, "clock.limit_s=60")
+    """One that takes the place of a dead robot, too: it asks 20,000 times and reads nothing.
+
+    The leader creeps, so that the mission is still under way when both have asked.
+    """
+    mission = Mission(tmp_path, "clock.limit_s=300", "robot.leader_speed=0.05")
     mission.await_ticks(20_000)
     pid = mission.children()["robot_agent 3"]
     password, endpoint, prefix = _identity(pid)

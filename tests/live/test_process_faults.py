@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import time
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -26,13 +25,10 @@ LIMIT = "clock.limit_s=60"
 
 
 @pytest.fixture
-def mission(tmp_path: Path) -> Iterator[Mission]:
+def mission(tmp_path: Path) -> Mission:
     running = Mission(tmp_path, LIMIT, "robot.leader_speed=0.2")
     running.await_ticks()
-    yield running
-    if running.child.poll() is None:
-        running.child.kill()
-    running.child.communicate()
+    return running
 
 
 def state(pid: int) -> str:
@@ -126,18 +122,14 @@ def test_a_process_that_somebody_starts_again_takes_part_as_after_a_restart(
 def test_a_restart_that_nobody_carries_out_ends_the_mission(tmp_path: Path) -> None:
     restart = "faults=[{kind='restart', at_s=12, robots=[2]}]"
     mission = Mission(tmp_path, restart, LIMIT, "robot.leader_speed=0.2")
-    try:
-        mission.await_ticks()
-        world = mission.children()["world_server"]
-        mission.child.send_signal(signal.SIGSTOP)
-        deadline = time.monotonic() + DEADLINE_S
-        while state(world) != "Z":
-            assert time.monotonic() < deadline
-            time.sleep(0.05)
-        mission.child.send_signal(signal.SIGCONT)
-        reason = f"not started within {RESTART_S:g} s: robot-2"
-        assert mission.finish()["reason"] == reason
-        proven(mission.out / "mission.mcap")
-    finally:
-        mission.child.kill()
-        mission.child.communicate()
+    mission.await_ticks()
+    world = mission.children()["world_server"]
+    mission.child.send_signal(signal.SIGSTOP)
+    deadline = time.monotonic() + DEADLINE_S
+    while state(world) != "Z":
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    mission.child.send_signal(signal.SIGCONT)
+    reason = f"not started within {RESTART_S:g} s: robot-2"
+    assert mission.finish()["reason"] == reason
+    proven(mission.out / "mission.mcap")

@@ -6,7 +6,6 @@ Every mission here ends by itself, and every log that it leaves is re-executed.
 import json
 import os
 import signal
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -19,12 +18,8 @@ pytestmark = pytest.mark.live
 
 
 @pytest.fixture
-def mission(tmp_path: Path) -> Iterator[Mission]:
-    running = Mission(tmp_path, "clock.limit_s=60")
-    yield running
-    if running.child.poll() is None:
-        running.child.kill()
-    running.child.communicate()
+def mission(tmp_path: Path) -> Mission:
+    return Mission(tmp_path, "clock.limit_s=60")
 
 
 FAULTS = (
