@@ -48,8 +48,12 @@ class KnownMap:
 
     def distances(self, goal: Point) -> FloatArray:
         """Length of the shortest raster way from each cell, (rows, columns) [m]; inf: none."""
+        return self.distances_over(self.free, goal)
+
+    def distances_over(self, free: BoolArray, goal: Point) -> FloatArray:
+        """The same where only cells of `free`, (rows, columns), can be driven over."""
         row, column = self.cell_of(goal)
-        return _dijkstra(self.free, row, column, _STEPS) * self.cell
+        return _dijkstra(free, row, column, _STEPS) * self.cell
 
     def shortest(self, start: Point, distances: FloatArray) -> FloatArray | None:
         """Taut way from start to the goal of `distances`, (n, 2) [m]; None when there is none."""

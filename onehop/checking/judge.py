@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import Protocol
 
 from onehop.checking.completeness import Completeness, DigestCheck
 from onehop.checking.fault_air import FaultyAir
@@ -56,8 +57,18 @@ class Report:
         return not self.violations
 
 
-def judge(log: LogFile, only: Iterable[str] = ()) -> Report:
-    """Test the invariants of a log, all or those named. A torn one is judged as far as it goes."""
+class Watcher(Protocol):
+    """Sees a log tick by tick while it is judged."""
+
+    def take(self, now: Snapshot) -> None:
+        """One more tick."""
+
+
+def judge(log: LogFile, only: Iterable[str] = (), watchers: Iterable[Watcher] = ()) -> Report:
+    """Test the invariants of a log, all or those named. A torn one is judged as far as it goes.
+
+    watchers: see every tick that is judged, after its invariants.
+    """
     scenario, summary = log.bundle.scenario, log.summary
     wanted = frozenset(only) or frozenset(INVARIANTS)
     findings = Findings(wanted)
@@ -65,7 +76,7 @@ def judge(log: LogFile, only: Iterable[str] = ()) -> Report:
     completeness = Completeness(findings, period_ns)
     digest = DigestCheck(findings)
     collisions = Collisions(findings, scenario)
-    checks = [
+    checks: list[Watcher] = [
         check
         for names, check in (
             ((COMPLETE,), completeness),
@@ -80,6 +91,7 @@ def judge(log: LogFile, only: Iterable[str] = ()) -> Report:
         )
         if wanted.intersection(names)
     ]
+    checks += watchers
     reading = _Reading(log)
     for now, messages in reading.ticks():
         digest.take(now.tick, messages)

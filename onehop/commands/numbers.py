@@ -29,6 +29,14 @@ MSDU = Range(1, 2304)
 
 STATIONS = Range(1, 200)
 
+RUNS = Range(0, 10_000_000)
+"""Missions of a campaign."""
+
+JOBS = Range(1, 1000)
+"""Worker processes."""
+
+SHARE = Range(0.0, 1.0)
+
 
 def within(limits: Range) -> Callable[[CallbackParam, float | None], float | None]:
     """A check for an option's value. Raises InputError."""

@@ -30,7 +30,19 @@ def claimed(folder: Path) -> Iterator[int]:
     """Hold a folder for one mission; gives the descriptor that a child inherits to hold it as well.
 
     Summary and figure of an earlier mission go: they say nothing about this one. Raises InputError when
-    the folder cannot be made or written, or another mission holds it.
+    the folder cannot be made or written, or somebody else holds it.
+    """
+    with held(folder) as descriptor:
+        with explained(folder, REMEDY):
+            _try_out(folder)
+        yield descriptor
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[int]:
+    """Make a folder if need be, and hold it; what is in it stays. Gives its descriptor.
+
+    Raises InputError when it cannot be made, or somebody else holds it.
     """
     with explained(folder, REMEDY):
         if folder.exists() and not folder.is_dir():
@@ -39,8 +51,6 @@ def claimed(folder: Path) -> Iterator[int]:
         descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
     try:
         _lock(descriptor, folder)
-        with explained(folder, REMEDY):
-            _try_out(folder)
         yield descriptor
     finally:
         os.close(descriptor)
@@ -70,7 +80,9 @@ def _lock(descriptor: int, folder: Path) -> None:
         fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:
         raise InputError(
-            str(folder), "another mission is writing there", "wait for its end, or give another --out"
+            str(folder),
+            "another mission or campaign is writing there",
+            "wait for its end, or give another --out",
         ) from None
     except OSError as error:
         if error.errno not in UNLOCKABLE:

@@ -1,0 +1,1 @@
+"""A search for the mission that breaks a promise: drawn by seed, judged from its log, made small."""

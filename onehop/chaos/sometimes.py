@@ -1,0 +1,113 @@
+"""What should happen in some mission of a campaign: what never does has not been tried by it."""
+
+from collections import Counter
+from collections.abc import Iterator
+
+from onehop.checking.snapshot import Snapshot
+from onehop.contracts.fault_section import KINDS
+from onehop.contracts.messages import Action, DeliveryStatus, Note, Truth
+from onehop.contracts.team import LossReason, Mode, Shape
+
+_NOTES = {
+    "elected": "a robot is elected leader",
+    "yielded": "a leader gives way to a better one",
+    "joined": "a leader takes robots in",
+    "lost_follower": "a leader gives a follower up",
+    "lost_leader": "a follower gives its leader up",
+    "narrow": "a leader orders a column for a passage",
+    "wide": "a team leaves its column",
+    "garbled": "a garbled message is found out",
+    "no_way": "a leader finds no way",
+    "arrived": "a leader reaches the goal",
+}
+
+_HURRY = "a follower hurries for want of throughput"
+_TWO = "two act as leaders at once"
+_THREE = "three act as leaders at once"
+_RELAYED = "a message is relayed"
+_LEADERLESS = "nobody acts as leader"
+_DIED_LEADING = "a leader dies"
+_DIED_ELECTED = "a leader dies within a Next period of its election"
+_DIED_COLUMN = "a leader dies in a column"
+_FAULT_IN_SETUP = "a fault begins during setup"
+
+_LOST = {
+    status: f"a message is lost: {status.value}" for status in DeliveryStatus if status != "delivered"
+}
+_MODES = {mode: f"a robot is in mode {mode.value}" for mode in Mode}
+_SHAPES = {shape: f"a team drives as {shape.value}" for shape in Shape}
+_FAULTS = {kind: f"a fault of kind {kind} begins" for kind in KINDS}
+_REASONS = {reason: f"a follower is given up: {reason.value}" for reason in LossReason}
+
+SOMETIMES: tuple[str, ...] = (
+    *_NOTES.values(), _TWO, _THREE, _LEADERLESS, _DIED_LEADING, _DIED_ELECTED, _DIED_COLUMN,
+    _FAULT_IN_SETUP, _HURRY, _RELAYED, *_REASONS.values(), *_LOST.values(), *_MODES.values(),
+    *_SHAPES.values(), *_FAULTS.values(),
+)  # fmt: skip
+"""Everything that is looked for."""
+
+_SOON_TICKS = 40
+"""A Next period of 2 s, in ticks of 50 ms: what the name of its property says, nearly."""
+
+
+class Sometimes:
+    """Watches a mission tick by tick. seen: how often each happened."""
+
+    def __init__(self) -> None:
+        self.seen: Counter[str] = Counter()
+        self._elected: dict[int, int] = {}
+        self._before: dict[int, Action] = {}
+
+    def take(self, now: Snapshot) -> None:
+        """One more tick."""
+        if now.truth is not None:
+            self.seen.update(self._of_truth(now, now.truth))
+        for robot, action in now.actions.items():
+            self.seen.update(self._of_action(now.tick, robot, action))
+        leaders = sum(action.status.leader == robot for robot, action in now.actions.items())
+        self.seen[_LEADERLESS] += bool(now.actions) and not leaders
+        self.seen[_TWO] += leaders == 2
+        self.seen[_THREE] += leaders >= 3
+        if now.record is not None:
+            for verdict in now.record.verdicts:
+                if verdict.status in _LOST:
+                    self.seen[_LOST[verdict.status]] += 1
+                elif len(verdict.path) > 2:
+                    self.seen[_RELAYED] += 1
+        self._before = now.actions
+
+    def _of_truth(self, now: Snapshot, truth: Truth) -> Iterator[str]:
+        setup = any(action.status.mode is Mode.SETUP for action in self._before.values())
+        for fault in truth.faults:
+            yield _FAULTS[fault.kind]
+            if setup:
+                yield _FAULT_IN_SETUP
+        for gone in truth.departures:
+            action = self._before.get(gone.robot)
+            if action is None or action.status.leader != gone.robot:
+                continue
+            yield _DIED_LEADING
+            if now.tick - self._elected.get(gone.robot, -_SOON_TICKS) < _SOON_TICKS:
+                yield _DIED_ELECTED
+            if action.status.shape is Shape.COLUMN and len(action.status.members) > 2:
+                yield _DIED_COLUMN
+
+    def _of_action(self, tick: int, robot: int, action: Action) -> Iterator[str]:
+        status, before = action.status, self._before.get(robot)
+        if before is None or before.status.mode is not status.mode:
+            yield _MODES[status.mode]
+        if before is None or before.status.shape is not status.shape:
+            yield _SHAPES[status.shape]
+        if 0.0 <= status.throughput_bps < status.threshold_bps:
+            yield _HURRY
+        for note in action.notes:
+            yield from self._of_note(tick, robot, note)
+
+    def _of_note(self, tick: int, robot: int, note: Note) -> Iterator[str]:
+        if note.kind in _NOTES:
+            yield _NOTES[note.kind]
+        if note.kind == "elected":
+            self._elected[robot] = tick
+        reason = note.data.get("reason")
+        if note.kind == "lost_follower" and reason in set(LossReason):
+            yield _REASONS[LossReason(reason)]

@@ -1,0 +1,175 @@
+"""`onehop chaos`: random missions, each judged from its log; failures are made small."""
+
+import os
+import sys
+import time
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from rich.console import Console
+from rich.live import Live
+from rich.text import Text
+
+from onehop.campaign.lines import Row
+from onehop.campaign.workers import Done, on_cores, on_dask
+from onehop.chaos import account
+from onehop.chaos.hunt import PAGE, Hunt, Wanted
+from onehop.chaos.page import write_page
+from onehop.chaos.process_mission import self_contained
+from onehop.commands.output import emit_json, say, stdout, table
+from onehop.contracts.errors import InputError
+from onehop.mission.stops import Stopped
+from onehop.scenario import scenario_file
+from onehop.scenario.bundle import Bundle
+from onehop.wire.output_folder import explained, held
+
+PLAIN_S = 10.0
+"""Wall-clock time between two plain lines of progress [s]."""
+
+
+class HowMany(NamedTuple):
+    """The numbers of the command line. jobs: None for one a core."""
+
+    runs: int
+    first_seed: int
+    jobs: int | None
+    processes: float
+    twice_every: int
+    shrink_runs: int
+
+
+def chaos(
+    scenario: Path,
+    settings: list[str],
+    how_many: HowMany,
+    dask: str | None,
+    out: Path | None,
+    corpus: Path | None,
+    as_is: bool,
+    budget: bool,
+    as_json: bool,
+) -> int:
+    """Run a campaign; returns the exit status."""
+    base = self_contained(scenario_file.load(scenario, settings), str(scenario))
+    taken = _corpus(corpus) if corpus is not None else {}
+    if as_is:
+        taken[scenario.name] = base
+    first, runs = how_many.first_seed, 0 if as_is else how_many.runs
+    wanted = Wanted(
+        base, range(first, first + runs), taken, budget, how_many.processes, how_many.twice_every
+    )
+    folder = out or Path("runs") / f"chaos-{time.strftime('%Y%m%d-%H%M%S')}"
+    with held(folder), _Progress(len(taken) + runs) as progress:
+        hunt = Hunt(wanted, folder, _workers(how_many.jobs, dask), progress.show)
+        try:
+            hunt.try_missions()
+            if how_many.shrink_runs and hunt.found:
+                progress.say_shrinking(len(hunt.found))
+                hunt.shrink(how_many.shrink_runs)
+        except Stopped:
+            _tell(hunt, folder, as_json)
+            raise
+    _tell(hunt, folder, as_json)
+    return account.exit_status(hunt)
+
+
+def _corpus(folder: Path) -> dict[str, Bundle]:
+    """Every scenario file of a folder, by name. Raises InputError."""
+    with explained(folder, "a folder with scenario files"):
+        paths = sorted(path for path in folder.iterdir() if path.suffix == ".toml")
+    if not paths:
+        raise InputError(f"--corpus {folder}", "has no scenario file", "files that end in .toml")
+    return {path.name: self_contained(scenario_file.load(path), str(path)) for path in paths}
+
+
+def _workers(
+    jobs: int | None, dask: str | None
+) -> Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Done[Any, Any]]]:
+    if dask is not None:
+        return lambda work, items: on_dask(work, items, dask)
+    count = jobs or len(os.sched_getaffinity(0))
+    return lambda work, items: on_cores(work, items, count)
+
+
+class _Progress:
+    """How many missions are done, how fast, and what was found: one line over itself on a terminal."""
+
+    def __init__(self, total: int) -> None:
+        self._total = total
+        self._done = 0
+        self._found: Counter[str] = Counter()
+        self._outcomes: Counter[str] = Counter()
+        self._started = time.monotonic()
+        self._next_plain = self._started + PLAIN_S
+        self._live: Live | None = None
+
+    def __enter__(self) -> "_Progress":
+        if sys.stderr.isatty():
+            self._live = Live(Text("starting …"), console=Console(stderr=True), transient=True)
+            self._live.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._live is not None:
+            self._live.stop()
+
+    def show(self, row: Row) -> None:
+        """One more mission is done."""
+        self._done += 1
+        self._outcomes[row["outcome"]] += 1
+        self._found.update(failure["property"] for failure in row["failures"])
+        now = time.monotonic()
+        if self._live is not None:
+            self._live.update(Text(self._line(now)))
+        elif now >= self._next_plain:
+            self._next_plain = now + PLAIN_S
+            say(self._line(now))
+
+    def say_shrinking(self, found: int) -> None:
+        """The missions are done; failures are made small."""
+        text = f"making {found} failures small"
+        if self._live is not None:
+            self._live.update(Text(text))
+        else:
+            say(text)
+
+    def _line(self, now: float) -> str:
+        rate = self._done / max(now - self._started, 1e-9)
+        kinds = [f"{count} {name}" for name, count in sorted(self._found.items())]
+        ends = [f"{count} {name}" for name, count in sorted(self._outcomes.items())]
+        found = ", ".join(kinds) or "nothing broken"
+        return (
+            f"{self._done} missions tried, {rate:.2f} a second, of {self._total} wanted: "
+            f"{', '.join(ends)}; {found}"
+        )
+
+
+def _tell(hunt: Hunt, folder: Path, as_json: bool) -> None:
+    page = write_page(hunt, folder / PAGE)
+    told = {**account.as_json(hunt), "page": str(page)}
+    if as_json:
+        emit_json(told)
+        return
+    console = stdout()
+    properties = table("What must hold", "property", "judged in", "broken in", "says")
+    properties.columns[-1].justify = "left"
+    for line in account.property_lines(hunt):
+        properties.add_row(line.name, str(line.judged), str(line.broken or "-"), line.says)
+    console.print(properties)
+    outcomes = ", ".join(f"{count} {outcome}" for outcome, count in sorted(told["outcomes"].items()))
+    faults = ", ".join(f"{count} {kind}" for kind, count in told["faults"].items())
+    repeated = told["repeated"]
+    console.print(f"missions    {told['runs']}: {outcomes or 'none'}; {told['robot_hours']} robot-hours")
+    console.print(f"rate        {told['missions_per_s']:.2f} missions a second")
+    console.print(f"faults      {faults or 'none'}")
+    console.print(f"repeated    {repeated['twice']} twice, {repeated['processes']} as processes")
+    console.print(f"never       {', '.join(told['never']) or 'nothing: all has happened that should'}")
+    for one in hunt.found:
+        console.print(
+            f"BROKEN      {one.failure.property} in {one.name}: {one.failure.what}", markup=False
+        )
+        if one.scenario is not None:
+            console.print(f"            again: onehop chaos {one.scenario} --as-is", markup=False)
+    console.print(f"page        {page}")
