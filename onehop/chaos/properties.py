@@ -13,7 +13,7 @@ PROPERTIES: dict[str, str] = {
     HANG: "a mission ends",
     SAME_BYTES: "the same mission leaves the same bytes, run again or as processes",
 }
-"""Beyond the invariants (onehop/checking); `one-team` and `re-election` there ask for progress, too."""
+"""Beyond the invariants (onehop/checking); some of those ask for progress, too."""
 
 LIVENESS = frozenset(("one-leader", "one-team", "re-election", ARRIVAL))
 """What must happen in the end; everything else must never happen."""

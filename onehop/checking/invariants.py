@@ -8,6 +8,7 @@ MEDIAN = "median"
 SHAPE = "shape"
 EPOCHS = "epochs"
 ONE_LEADER = "one-leader"
+ONE_TEAM = "one-team"
 RE_ELECTION = "re-election"
 RADIO_INTEGRITY = "radio-integrity"
 FAULT_BIT = "fault-bit"
@@ -23,6 +24,7 @@ INVARIANTS: dict[str, str] = {
     SHAPE: "every shape is the one that the size of the team, or Narrow, asks for",
     EPOCHS: "no epoch of a robot goes back, and no older roster is obeyed",
     ONE_LEADER: "robots that hear each other, unbroken, have one leader in the end",
+    ONE_TEAM: "robots that hear each other, unbroken, and nobody else, are one team in the end",
     RE_ELECTION: "after a leader has left, a new one acts in time",
     RADIO_INTEGRITY: "nothing is delivered that was not sent, or twice, altered, or before its airtime",
     FAULT_BIT: "every fault begins when it is due and shows its effect as long as it lasts",
@@ -40,6 +42,7 @@ COUNTED: dict[str, str] = {
     SHAPE: "shapes",
     EPOCHS: "ticks of robots",
     ONE_LEADER: "ticks",
+    ONE_TEAM: "ticks of teams",
     RE_ELECTION: "elections",
     RADIO_INTEGRITY: "verdicts",
     FAULT_BIT: "faults",
@@ -52,6 +55,7 @@ UNEXERCISED: dict[str, str] = {
     DIGEST: "the log has no outcome to be held against",
     SILENCE: "no robot left the mission or was stopped",
     ONE_LEADER: "no two robots heard each other, unbroken, for the bound",
+    ONE_TEAM: "no robots heard each other, unbroken, and nobody else, for the bound",
     RE_ELECTION: "no leader left robots behind that heard each other until the bound was over",
     RADIO_INTEGRITY: "no message was sent",
     FAULT_BIT: "there was no fault",
@@ -59,6 +63,7 @@ UNEXERCISED: dict[str, str] = {
 """Why there was nothing to judge; the others are exercised by every log that has a tick."""
 
 NOT_IN_THESIS: dict[str, str] = {
+    ONE_TEAM: "profile thesis has no rule by which two teams become one",
     ONE_LEADER: "profile thesis has no rule by which two leaders become one",
 }
 """What profile `thesis` does not promise."""

@@ -1,4 +1,4 @@
-"""`one-leader` and `re-election`: what becomes of leadership among robots that can hear each other.
+"""`one-leader`, `one-team`, `re-election`: what becomes of leadership where robots hear each other.
 
 Bounds in Next periods T, as docs/modes.md derives them for profile `team`: B = 4 T, and 3 T more where a
 roster still names robots that are gone or out of reach, since those have to be given up first.
@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from onehop.checking.findings import Exhibit, Findings
-from onehop.checking.invariants import ONE_LEADER, RE_ELECTION
+from onehop.checking.invariants import ONE_LEADER, ONE_TEAM, RE_ELECTION
 from onehop.checking.reach import Links
 from onehop.checking.snapshot import Snapshot
 from onehop.contracts.messages import Truth
+from onehop.contracts.printable import ids_in_words
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.team import Mode, Status
 
@@ -21,6 +22,10 @@ BOUND_PERIODS = 4
 
 GIVING_UP_PERIODS = 3
 """Next periods more in which the dead are given up: lost_after of 2, and the first asking."""
+
+
+_Group = tuple[tuple[int, int], ...]
+"""Robots and their incarnations."""
 
 
 @dataclass(slots=True)
@@ -54,7 +59,8 @@ class Leadership:
         self._statuses: dict[int, Status] = {}
         self._acting_since: dict[int, int] = {}
         self._sound_since: dict[int, int] = {}
-        self._leaderless_since: dict[tuple[int, ...], int] = {}
+        self._leaderless_since: dict[_Group, int] = {}
+        self._divided_since: dict[_Group, int] = {}
         self._vacancies: list[_Vacancy] = []
 
     def take(self, now: Snapshot) -> None:
@@ -73,12 +79,13 @@ class Leadership:
         if self._is_team_profile:
             self._judge_two(now, leaders)
             self._judge_none(now, leaders)
+            self._judge_groups(now)
         self._open_vacancies(now, now.truth, before)
         self._judge_vacancies(now, leaders)
 
     def _forget(self) -> None:
         self._statuses, self._acting_since, self._sound_since = {}, {}, {}
-        self._leaderless_since = {}
+        self._leaderless_since, self._divided_since = {}, {}
         self._vacancies = []
 
     # one-leader
@@ -124,16 +131,14 @@ class Leadership:
         for group in self._links.groups(present):
             if set(group) & set(leaders) or not self._links.are_linked_since(group, now.tick):
                 continue
-            key = tuple(group)
+            key = self._named(group, now)
             since = self._leaderless_since[key] = before.get(key, now.tick)
             named = {one for robot in group for one in self._statuses[robot].members}
             bound = self._bound if named <= set(group) else self._long_bound
             if now.tick - since >= bound:
-                what = (
-                    f"{len(group)} robots hear each other and have been without a leader since {since}"
-                )
+                what = f"{_who(group)} without a leader since tick {since}"
                 evidence = [now.status_of(robot) for robot in group]
-                self._findings.report_state(ONE_LEADER, now.tick, key, what, *evidence)
+                self._findings.report_state(ONE_LEADER, now.tick, tuple(group), what, *evidence)
 
     def _covers(self, leaders: list[int], present: list[int]) -> bool:
         """Whether everyone is a leader or may hear one."""
@@ -143,6 +148,38 @@ class Leadership:
             return False
         out_of_reach = self._links.apart[np.ix_(rows, mine)].all(axis=1)
         return not out_of_reach.any()
+
+    # one-team
+
+    def _judge_groups(self, now: Snapshot) -> None:
+        """A group out of everyone's reach, all linked with each other, is one team after the bound."""
+        before, self._divided_since = self._divided_since, {}
+        start = now.tick - self._long_bound
+        for group in self._links.groups(sorted(self._statuses)):
+            is_linked = len(group) > 1 and self._links.are_linked_since(group, start)
+            if is_linked:
+                self._findings.count(ONE_TEAM)
+            if self._is_one_team(group):
+                continue
+            key = self._named(group, now)
+            since = self._divided_since[key] = before.get(key, now.tick)
+            if is_linked and since <= start:
+                what = f"{_who(group)}, and are not one team after {self._long_bound} ticks"
+                evidence = [now.status_of(robot) for robot in group]
+                self._findings.report_state(ONE_TEAM, now.tick, tuple(group), what, *evidence)
+
+    def _is_one_team(self, group: list[int]) -> bool:
+        """Whether all obey one of them, which has all on its roster."""
+        head = self._statuses[group[0]].leader
+        return (
+            head in group
+            and all(self._statuses[robot].leader == head for robot in group)
+            and set(group) <= set(self._statuses[head].members)
+        )
+
+    def _named(self, group: list[int], now: Snapshot) -> _Group:
+        """A group of these processes: one that starts anew begins anew."""
+        return tuple((robot, now.present[robot].incarnation) for robot in group)
 
     # re-election
 
@@ -187,3 +224,9 @@ class Leadership:
                 evidence = [vacancy.last_word, *(now.status_of(robot) for robot in rest)]
                 self._findings.report(RE_ELECTION, now.tick, tuple(rest), what, *evidence)
         self._vacancies = open_still
+
+
+def _who(group: list[int]) -> str:
+    if len(group) == 1:
+        return f"robot {group[0]} is alone"
+    return f"robots {ids_in_words(group)} hear each other and nobody else"

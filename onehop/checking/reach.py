@@ -99,8 +99,8 @@ class Budget:
 class Links:
     """Links of a team, tick by tick. robots: its ids.
 
-    since: (n, n) first tick from which two robots have been linked without a break; the tick after this
-    one where they are not. apart: (n, n) pairs that cannot hear each other now.
+    since: (n, n) first tick from which two robots have been linked without a break, on the diagonal from
+    which a robot has run as the same process and not slow; the tick after this one where they are not. apart: (n, n) pairs that cannot hear each other now.
     """
 
     def __init__(self, robots: tuple[int, ...], radio: RadioSection, late_ns: int) -> None:
@@ -130,6 +130,7 @@ class Links:
         distances = np.hypot(apart[..., 0], apart[..., 1])
         snr = self._budget.mean_snr_db(distances) - rise[None, :]
         snr[np.isnan(snr)] = -np.inf
+        np.fill_diagonal(snr, np.where(np.isnan(place[:, 0]), -np.inf, np.inf))
         for cut in truth.cuts:
             side_a, side_b = self._rows(cut.side_a), self._rows(cut.side_b)
             snr[np.ix_(side_a, side_b)] = -np.inf
@@ -167,10 +168,9 @@ class Links:
         return verdict.arrival_ns - verdict.offered_ns > self._late_ns
 
     def are_linked_since(self, robots: list[int], tick: int) -> bool:
-        """Whether all of these have been linked with each other from a tick on."""
+        """Whether all of these have run and been linked with each other from a tick on."""
         rows = self._rows(tuple(robots))
         block = self.since[np.ix_(rows, rows)] <= tick
-        np.fill_diagonal(block, val=True)
         return len(rows) == len(robots) and bool(block.all())
 
     def groups(self, robots: list[int]) -> list[list[int]]:

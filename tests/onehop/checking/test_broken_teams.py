@@ -1,13 +1,20 @@
 """Teams that break their rules: each broken rule is found by its name, and nothing else is."""
 
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.onehop.checking.conftest import KILLED, LEADER, RETURNED, SUCCESSOR
+from onehop.checking import judge
+from onehop.wire.log_reader import LogFile
+from tests.onehop.checking.conftest import KILLED, LEADER, QUICK, RETURNED, SUCCESSOR
 from tests.onehop.forgery import Forgery
+from tests.onehop.scenes import field, log_of
 
 EVERYONE = (1, 2, 3, 4)
+
+LONG_BOUND = 71
+"""Seven Next periods of the quick missions, and a tick."""
 
 
 def commanding(log: Forgery, robot: int, first: int = 50) -> int:
@@ -145,8 +152,44 @@ def nobody_leads(log: Forgery) -> None:
 )
 def test_two_leaders_or_none_are_found(broken: Any, alter: Any, log: str, who: Any) -> None:
     report = broken(alter, log)
-    assert set(report.broken) == {"one-leader"}
-    assert {one.robots for one in report.violations} == who
+    assert set(report.broken) == {"one-leader", "one-team"}
+    assert {one.robots for one in report.violations if one.invariant == "one-leader"} == who
+
+
+def one_is_left_joining(log: Forgery) -> None:
+    log.say(range(30, 120), 4, members=[4], **UNLED)
+
+
+def the_leader_has_one_too_few(log: Forgery) -> None:
+    log.say(range(30, 120), LEADER, members=[1, 2, 3], shape="wedge", epoch=9)
+
+
+def one_obeys_who_does_not_lead(log: Forgery) -> None:
+    log.say(range(30, 120), 4, leader=1, members=[1, 4], shape="column", epoch=9)
+
+
+@pytest.mark.parametrize(
+    "alter", [one_is_left_joining, the_leader_has_one_too_few, one_obeys_who_does_not_lead]
+)
+def test_robots_that_do_not_become_one_team_are_found(broken: Any, alter: Any) -> None:
+    found = [one for one in broken(alter).violations if one.invariant == "one-team"]
+    assert [one.robots for one in found] == [EVERYONE]
+    assert found[0].tick == 30 + LONG_BOUND
+
+
+def test_one_that_starts_anew_while_nobody_hears_it_has_its_time_again(tmp_path: Path) -> None:
+    """A robot alone, started again and again: each process has to find out that it is alone."""
+    restarts = ", ".join(f"{{kind='restart', at_s={at}, robots=[1]}}" for at in (2, 4, 5.5, 7, 8.5))
+    settings = (*QUICK[:2], "clock.limit_s=12", "team.size=1", f"faults=[{restarts}]")
+    log_of(field(tmp_path, *settings), tmp_path / "mission.mcap")
+    assert judge(LogFile(tmp_path / "mission.mcap")).violations == ()
+
+
+def test_a_follower_that_is_stopped_after_its_leader_died_owes_no_successor(tmp_path: Path) -> None:
+    faults = "{kind='kill', at_s=1, robots=[1]}, {kind='stop', at_s=1.5, robots=[2], duration_s=9}"
+    settings = (*QUICK[:2], "clock.limit_s=14", "team.size=2", f"faults=[{faults}]")
+    log_of(field(tmp_path, *settings), tmp_path / "mission.mcap")
+    assert judge(LogFile(tmp_path / "mission.mcap")).violations == ()
 
 
 def two_lead_for_a_while(log: Forgery) -> None:
