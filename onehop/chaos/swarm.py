@@ -130,7 +130,7 @@ def _radio(random: np.random.Generator, own: Any) -> Any:
         fading=_one(random, "frame", "frame", "exchange"),
         fast_fading=_one(random, "none", "none", "none", "rayleigh", "rician"),
         wall_loss_db=_one(random, 0.0, 0.0, 6.0),
-        queue_frames=_one(random, 64, 64, 4),
+        queue_frames=_one(random, 64, 64, 16),
     )
 
 

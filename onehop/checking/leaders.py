@@ -169,12 +169,12 @@ class Leadership:
                 self._findings.report_state(ONE_TEAM, now.tick, tuple(group), what, *evidence)
 
     def _is_one_team(self, group: list[int]) -> bool:
-        """Whether all obey one of them, which has all on its roster."""
+        """Whether all obey one of them, which has all on its roster, and nobody else."""
         head = self._statuses[group[0]].leader
         return (
             head in group
             and all(self._statuses[robot].leader == head for robot in group)
-            and set(group) <= set(self._statuses[head].members)
+            and tuple(group) == self._statuses[head].members
         )
 
     def _named(self, group: list[int], now: Snapshot) -> _Group:

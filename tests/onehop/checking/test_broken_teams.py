@@ -177,6 +177,17 @@ def test_robots_that_do_not_become_one_team_are_found(broken: Any, alter: Any) -
     assert found[0].tick == 30 + LONG_BOUND
 
 
+def test_a_leader_that_does_not_give_up_the_dead_is_found(tmp_path: Path) -> None:
+    settings = (*QUICK[:2], "clock.limit_s=9", "faults=[{kind='kill', at_s=1, robots=[4]}]")
+    log_of(field(tmp_path, *settings), tmp_path / "mission.mcap")
+    log = Forgery(tmp_path / "mission.mcap")
+    log.say(
+        range(len(log.ticks)), LEADER, leader=LEADER, members=list(EVERYONE), shape="diamond", epoch=0
+    )
+    found = judge(log.write(tmp_path / "forged.mcap")).violations
+    assert (1, 2, 3) in {one.robots for one in found if one.invariant == "one-team"}
+
+
 def test_one_that_starts_anew_while_nobody_hears_it_has_its_time_again(tmp_path: Path) -> None:
     """A robot alone, started again and again: each process has to find out that it is alone."""
     restarts = ", ".join(f"{{kind='restart', at_s={at}, robots=[1]}}" for at in (2, 4, 5.5, 7, 8.5))
