@@ -20,7 +20,7 @@ from onehop.chaos.process_mission import write_scenario
 from onehop.chaos.properties import CRASH
 from onehop.chaos.shrink import MOST_RUNS, Shrunk
 from onehop.chaos.swarm import stream
-from onehop.chaos.trial import Failure, tried_in
+from onehop.chaos.trial import Failure, tried
 from onehop.contracts.printable import ids_in_words
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import LOG
@@ -144,7 +144,7 @@ class Hunt:
     def _write(self, order: MissionOrder, shrunk: Shrunk) -> Path:
         folder = self._folder / FAILURES / f"{Path(order.name).stem}-{shrunk.failure.property}"
         folder.mkdir(parents=True, exist_ok=True)
-        tried_in(shrunk.bundle, folder / LOG, shrunk.failure.property)
+        tried(shrunk.bundle, shrunk.failure.property, folder / LOG)
         path = folder / "scenario.toml"
         return write_scenario(shrunk.bundle, path, _comment(order, shrunk, path))
 

@@ -12,7 +12,7 @@ from onehop.chaos.process_mission import run_as_processes
 from onehop.chaos.properties import CRASH, SAME_BYTES
 from onehop.chaos.shrink import Shrunk, shrink
 from onehop.chaos.swarm import draw_mission
-from onehop.chaos.trial import Failure, Trial, tried_in
+from onehop.chaos.trial import Failure, Trial, tried
 from onehop.contracts.errors import OnehopError
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import LOG
@@ -54,7 +54,7 @@ def try_mission(order: MissionOrder) -> Row:
     bundle = order.bundle()
     with tempfile.TemporaryDirectory(prefix="onehop-chaos-") as folder:
         path = Path(folder) / LOG
-        trial = tried_in(bundle, path)
+        trial = tried(bundle, log=path if order.repeat != "once" else None)
         failures = list(trial.failures)
         if trial.summary is not None and order.repeat != "once":
             failures += _repeated(bundle, path, order.repeat)
@@ -70,7 +70,7 @@ def _repeated(bundle: Bundle, path: Path, repeat: Repeat) -> list[Failure]:
         if repeat == "processes":
             run_as_processes(bundle, folder)
         else:
-            failed = tried_in(bundle, again, SAME_BYTES).failures
+            failed = tried(bundle, SAME_BYTES, again).failures
             if failed:
                 return [Failure(SAME_BYTES, -1, (), f"it fails only at times: {failed[0].what}")]
         first = compare(open_log(path), open_log(again)).first

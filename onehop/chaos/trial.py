@@ -1,7 +1,6 @@
 """One mission of chaos: run in this process, judged from its log, and what came of it as a row."""
 
 import signal
-import tempfile
 import threading
 import time
 import traceback
@@ -20,10 +19,9 @@ from onehop.checking.findings import Violation
 from onehop.checking.invariants import COMPLETE, INVARIANTS, NO_COLLISION
 from onehop.drivers import inline
 from onehop.scenario.bundle import Bundle
-from onehop.wire.journal import Journal
-from onehop.wire.log_reader import LogFile
+from onehop.wire.journal import Journal, WireMessage
+from onehop.wire.log_reader import LoggedTick
 from onehop.wire.log_writer import LogWriter
-from onehop.wire.output_folder import LOG
 from onehop.wire.summary import summarize
 
 HANG_S = 600.0
@@ -59,17 +57,41 @@ class Trial:
         return {failure.property for failure in self.failures}
 
 
-def tried(bundle: Bundle, only: str | None = None) -> Trial:
-    """Run a mission and judge it, by everything or by one property only."""
-    with tempfile.TemporaryDirectory(prefix="onehop-chaos-") as folder:
-        return tried_in(bundle, Path(folder) / LOG, only)
+class Recording:
+    """The messages of a mission that is run in this process, as its log would have them."""
+
+    torn = False
+
+    def __init__(self, bundle: Bundle) -> None:
+        self.bundle = bundle
+        self.summary: dict[str, Any] | None = None
+        self._ticks: list[LoggedTick] = []
+
+    def add(self, tick: int, messages: list[WireMessage]) -> None:
+        """One more tick, in canonical order."""
+        self._ticks.append(LoggedTick(tick, messages))
+
+    def ticks(self) -> Iterator[LoggedTick]:
+        """Every tick."""
+        return iter(self._ticks)
+
+    def write(self, path: Path) -> None:
+        """Write the log."""
+        log = LogWriter(path, self.bundle, "inline")
+        for tick in self._ticks:
+            log.write(tick.tick, tick.messages)
+        log.close(self.summary)
 
 
-def tried_in(bundle: Bundle, path: Path, only: str | None = None) -> Trial:
-    """The same; the log stays in `path`."""
+def tried(bundle: Bundle, only: str | None = None, log: Path | None = None) -> Trial:
+    """Run a mission and judge it, by everything or by one property only.
+
+    log: where its log is written, if it is wanted and the mission comes to its end.
+    """
+    recording = Recording(bundle)
     try:
         with _limited(HANG_S):
-            summary = _run(bundle, path)
+            _run(recording)
     except _HangError:
         what = f"it still runs after {HANG_S:g} s"
         return Trial(None, (Failure(HANG, -1, (), what),), {}, {})
@@ -77,23 +99,24 @@ def tried_in(bundle: Bundle, path: Path, only: str | None = None) -> Trial:
         where = traceback.extract_tb(error.__traceback__)[-1]
         what = f"{type(error).__name__} in {Path(where.filename).name}:{where.lineno}: {error}"
         return Trial(None, (Failure(CRASH, -1, (), what),), {}, {})
-    return _judged(bundle, path, summary, only)
+    if log is not None:
+        recording.write(log)
+    return _judged(recording, only)
 
 
-def _run(bundle: Bundle, path: Path) -> dict[str, Any]:
-    log = LogWriter(path, bundle, "inline")
-    journal = Journal(log.write)
+def _run(recording: Recording) -> None:
+    journal = Journal(recording.add)
     started = time.monotonic()
-    outcome = inline.run(bundle, journal)
-    summary = summarize(outcome, time.monotonic() - started, journal.digest(), str(path))
-    log.close(summary)
-    return summary
+    outcome = inline.run(recording.bundle, journal)
+    recording.summary = summarize(outcome, time.monotonic() - started, journal.digest(), None)
 
 
-def _judged(bundle: Bundle, path: Path, summary: dict[str, Any], only: str | None) -> Trial:
+def _judged(recording: Recording, only: str | None) -> Trial:
+    bundle, summary = recording.bundle, recording.summary
+    assert summary is not None
     end, seen = Disturbance(), Sometimes()
     invariants = () if only is None else (only if only in INVARIANTS else COMPLETE,)
-    report = judge(LogFile(path), invariants, (end, seen))
+    report = judge(recording, invariants, (end, seen))
     recovery = RECOVERY_S * 1e9 / bundle.scenario.clock.period_ns
     failures: dict[str, Failure] = {}
     for one in report.violations:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 from onehop.checking.completeness import Completeness, DigestCheck
 from onehop.checking.fault_air import FaultyAir
@@ -33,8 +33,9 @@ from onehop.checking.snapshot import Snapshot, snapshot
 from onehop.checking.team import Team
 from onehop.checking.voice import Voices
 from onehop.contracts.errors import LogError
+from onehop.scenario.bundle import Bundle
 from onehop.wire.journal import WireMessage
-from onehop.wire.log_reader import LogFile
+from onehop.wire.log_reader import LoggedTick
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +66,21 @@ class Watcher(Protocol):
         """One more tick."""
 
 
-def judge(log: LogFile, only: Iterable[str] = (), watchers: Iterable[Watcher] = ()) -> Report:
+class Log(Protocol):
+    """What is judged: a log file, or the messages of a mission that has just been run."""
+
+    torn: bool
+    summary: dict[str, Any] | None
+
+    @property
+    def bundle(self) -> Bundle:
+        """What the mission was made from."""
+
+    def ticks(self) -> Iterator[LoggedTick]:
+        """Its messages, in canonical order. Raises LogError."""
+
+
+def judge(log: Log, only: Iterable[str] = (), watchers: Iterable[Watcher] = ()) -> Report:
     """Test the invariants of a log, all or those named. A torn one is judged as far as it goes.
 
     watchers: see every tick that is judged, after its invariants.
@@ -114,7 +129,7 @@ class _Reading:
     The last tick before a tear, or before what cannot be read, is left out if it is not whole.
     """
 
-    def __init__(self, log: LogFile) -> None:
+    def __init__(self, log: Log) -> None:
         self._log = log
         self._team = frozenset(log.bundle.scenario.team.robots)
         self.count = 0

@@ -100,7 +100,8 @@ class Links:
     """Links of a team, tick by tick. robots: its ids.
 
     since: (n, n) first tick from which two robots have been linked without a break, on the diagonal from
-    which a robot has run as the same process and not slow; the tick after this one where they are not. apart: (n, n) pairs that cannot hear each other now.
+    which a robot has run as the same process and not slow; the tick after this one where they are not.
+    apart: (n, n) pairs that cannot hear each other now.
     """
 
     def __init__(self, robots: tuple[int, ...], radio: RadioSection, late_ns: int) -> None:
@@ -175,8 +176,10 @@ class Links:
 
     def groups(self, robots: list[int]) -> list[list[int]]:
         """Robots in groups, each out of the reach of all others."""
-        near_each_other = ~self.apart
         left, groups = self._rows(tuple(robots)), []
+        near_each_other = ~self.apart
+        if near_each_other[np.ix_(left, left)].all():
+            return [sorted(robots)] if left else []
         while left:
             group, edge = [], [left.pop(0)]
             while edge:
