@@ -86,7 +86,7 @@ def _until_a_worker_dies(
     finally:
         lifeline.close()
         end.close()
-        pool.shutdown(wait=False, cancel_futures=True)
+        pool.shutdown(cancel_futures=True)
 
 
 def _settle(lifeline: Connection) -> None:

@@ -28,6 +28,14 @@ _Group = tuple[tuple[int, int], ...]
 """Robots and their incarnations."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Wait:
+    """Something is not yet as it should be. since, deadline: ticks."""
+
+    since: int
+    deadline: int
+
+
 @dataclass(slots=True)
 class _Vacancy:
     """A leader has left. rest: who obeyed it. deadline: tick by which a new one acts."""
@@ -59,8 +67,8 @@ class Leadership:
         self._statuses: dict[int, Status] = {}
         self._acting_since: dict[int, int] = {}
         self._sound_since: dict[int, int] = {}
-        self._leaderless_since: dict[_Group, int] = {}
-        self._divided_since: dict[_Group, int] = {}
+        self._leaderless: dict[_Group, _Wait] = {}
+        self._divided: dict[_Group, _Wait] = {}
         self._vacancies: list[_Vacancy] = []
 
     def take(self, now: Snapshot) -> None:
@@ -85,7 +93,7 @@ class Leadership:
 
     def _forget(self) -> None:
         self._statuses, self._acting_since, self._sound_since = {}, {}, {}
-        self._leaderless_since, self._divided_since = {}, {}
+        self._leaderless, self._divided = {}, {}
         self._vacancies = []
 
     # one-leader
@@ -124,19 +132,18 @@ class Leadership:
 
     def _judge_none(self, now: Snapshot, leaders: list[int]) -> None:
         """A group out of everyone's reach, all linked with each other, is not without a leader for B."""
-        before, self._leaderless_since = self._leaderless_since, {}
+        before, self._leaderless = self._leaderless, {}
         present = sorted(self._statuses)
         if not present or self._covers(leaders, present):
             return
         for group in self._links.groups(present):
             if set(group) & set(leaders) or not self._links.are_linked_since(group, now.tick):
                 continue
-            key = self._named(group, now)
-            since = self._leaderless_since[key] = before.get(key, now.tick)
-            named = {one for robot in group for one in self._statuses[robot].members}
-            bound = self._bound if named <= set(group) else self._long_bound
-            if now.tick - since >= bound:
-                what = f"{_who(group)} without a leader since tick {since}"
+            key, strangers = self._named(group, now), self._strangers(group)
+            bound = self._bound_with(strangers) if strangers else self._bound
+            wait = self._leaderless[key] = before.get(key, _Wait(now.tick, now.tick + bound))
+            if now.tick >= wait.deadline:
+                what = f"{_who(group)} without a leader since tick {wait.since}"
                 evidence = [now.status_of(robot) for robot in group]
                 self._findings.report_state(ONE_LEADER, now.tick, tuple(group), what, *evidence)
 
@@ -153,18 +160,18 @@ class Leadership:
 
     def _judge_groups(self, now: Snapshot) -> None:
         """A group out of everyone's reach, all linked with each other, is one team after the bound."""
-        before, self._divided_since = self._divided_since, {}
-        start = now.tick - self._long_bound
+        before, self._divided = self._divided, {}
         for group in self._links.groups(sorted(self._statuses)):
-            is_linked = len(group) > 1 and self._links.are_linked_since(group, start)
-            if is_linked:
-                self._findings.count(ONE_TEAM)
-            if self._is_one_team(group):
+            if len(group) == 1:
                 continue
-            key = self._named(group, now)
-            since = self._divided_since[key] = before.get(key, now.tick)
-            if is_linked and since <= start:
-                what = f"{_who(group)}, and are not one team after {self._long_bound} ticks"
+            if self._links.are_linked_since(group, now.tick - self._long_bound):
+                self._findings.count(ONE_TEAM)
+            if self._is_one_team(group) or not self._links.are_linked_since(group, now.tick):
+                continue
+            key, bound = self._named(group, now), self._bound_with(self._strangers(group))
+            wait = self._divided[key] = before.get(key, _Wait(now.tick, now.tick + bound))
+            if now.tick >= wait.deadline and self._links.are_linked_since(group, wait.since):
+                what = f"{_who(group)}, and have not been one team since tick {wait.since}"
                 evidence = [now.status_of(robot) for robot in group]
                 self._findings.report_state(ONE_TEAM, now.tick, tuple(group), what, *evidence)
 
@@ -176,6 +183,14 @@ class Leadership:
             and all(self._statuses[robot].leader == head for robot in group)
             and tuple(group) == self._statuses[head].members
         )
+
+    def _strangers(self, group: list[int]) -> int:
+        """How many robots outside of a group its rosters name."""
+        return len({one for robot in group for one in self._statuses[robot].members}.difference(group))
+
+    def _bound_with(self, strangers: int) -> int:
+        """Ticks until a group has a leader that has given up so many, each elected in turn at worst."""
+        return self._long_bound + int(strangers * self._successor_patience)
 
     def _named(self, group: list[int], now: Snapshot) -> _Group:
         """A group of these processes: one that starts anew begins anew."""

@@ -196,6 +196,17 @@ def test_one_that_starts_anew_while_nobody_hears_it_has_its_time_again(tmp_path:
     assert judge(LogFile(tmp_path / "mission.mcap")).violations == ()
 
 
+def test_one_that_is_cut_off_from_many_gives_them_up_one_by_one(tmp_path: Path) -> None:
+    settings = (
+        *QUICK[:2],
+        "clock.limit_s=12",
+        "team.size=10",
+        "faults=[{kind='cut', at_s=1, robots=[1]}]",
+    )
+    log_of(field(tmp_path, *settings), tmp_path / "mission.mcap")
+    assert judge(LogFile(tmp_path / "mission.mcap")).violations == ()
+
+
 def test_a_follower_that_is_stopped_after_its_leader_died_owes_no_successor(tmp_path: Path) -> None:
     faults = "{kind='kill', at_s=1, robots=[1]}, {kind='stop', at_s=1.5, robots=[2], duration_s=9}"
     settings = (*QUICK[:2], "clock.limit_s=14", "team.size=2", f"faults=[{faults}]")
