@@ -98,8 +98,11 @@ class Hunt:
         self.wall_s = 0.0
         self.tried_now = 0
 
-    def try_missions(self) -> None:
-        """Try what the folder has not; whatever ends this, `rows` has what was tried."""
+    def try_missions(self, until_found: bool = False) -> None:
+        """Try what the folder has not; whatever ends this, `rows` has what was tried.
+
+        until_found: end with the first mission in which something is broken.
+        """
         orders = {order.name: order for order in self._wanted.orders()}
         started = time.monotonic()
         with Lines(self._folder / MISSIONS, self._wanted.about()) as lines:
@@ -113,6 +116,8 @@ class Hunt:
                     self.rows.append(row)
                     self.tried_now += 1
                     self._tell(row)
+                    if until_found and row["failures"]:
+                        break
             finally:
                 self.wall_s = time.monotonic() - started
                 place = {name: number for number, name in enumerate(orders)}

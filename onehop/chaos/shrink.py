@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from onehop.chaos.properties import ARRIVAL, CRASH
-from onehop.chaos.trial import Failure, tried
+from onehop.chaos.trial import Failure, Trial, tried
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.scenario import Scenario
@@ -26,6 +26,8 @@ from onehop.contracts.sections import (
     TeamSection,
 )
 from onehop.scenario.bundle import Bundle
+
+Try = Callable[[Bundle, str], Trial]
 
 MOST_RUNS = 400
 """Missions run to shrink one failure, at most."""
@@ -51,11 +53,12 @@ class _SpentError(Exception):
 class _Search:
     """The smallest failing mission so far, and the runs that are left."""
 
-    def __init__(self, bundle: Bundle, failure: Failure, most_runs: int) -> None:
+    def __init__(self, bundle: Bundle, failure: Failure, most_runs: int, try_it: Try) -> None:
         self.bundle = bundle
         self.failure = failure
         self.runs = 0
         self._most_runs = most_runs
+        self._try = try_it
 
     @property
     def scenario(self) -> Scenario:
@@ -70,7 +73,7 @@ class _Search:
         self.runs += 1
         files = self.bundle.files if candidate.map.file else {}
         bundle = Bundle(candidate, files)
-        for failure in tried(bundle, self.failure.property).failures:
+        for failure in self._try(bundle, self.failure.property).failures:
             if _cause(failure) == _cause(self.failure):
                 self.bundle, self.failure = bundle, failure
                 return True
@@ -82,9 +85,9 @@ def _cause(failure: Failure) -> tuple[str, str]:
     return failure.property, failure.what.partition(": ")[0] if failure.property == CRASH else ""
 
 
-def shrink(bundle: Bundle, failure: Failure, most_runs: int = MOST_RUNS) -> Shrunk:
-    """Make a mission small in which a property fails."""
-    search = _Search(bundle, failure, most_runs)
+def shrink(bundle: Bundle, failure: Failure, most_runs: int = MOST_RUNS, try_it: Try = tried) -> Shrunk:
+    """Make a mission small in which a property fails. try_it: runs and judges a candidate."""
+    search = _Search(bundle, failure, most_runs, try_it)
     try:
         while sum(step(search) for step in _STEPS):  # every step, whatever the others took
             pass

@@ -37,6 +37,7 @@ class HowMany(NamedTuple):
     jobs: int | None
     processes: float
     twice_every: int
+    until_found: bool
     shrink_runs: int
 
 
@@ -64,7 +65,7 @@ def chaos(
     with held(folder), _Progress(len(taken) + runs) as progress:
         hunt = Hunt(wanted, folder, _workers(how_many.jobs, dask), progress.show)
         try:
-            hunt.try_missions()
+            hunt.try_missions(how_many.until_found)
             if how_many.shrink_runs and hunt.found:
                 progress.say_shrinking(len(hunt.found))
                 hunt.shrink(how_many.shrink_runs)

@@ -53,6 +53,9 @@ def chaos(
             help="Only faults that the team is to survive, or any: then nothing is asked to happen.",
         ),
     ] = True,
+    until_found: Annotated[
+        bool, Option("--until-found", help="End with the first mission that breaks something.")
+    ] = False,
     shrink_runs: Annotated[
         int,
         Option(
@@ -74,5 +77,5 @@ def chaos(
     """
     from onehop.commands import chaos as command
 
-    how_many = command.HowMany(runs, seed, jobs, processes, twice_every, shrink_runs)
+    how_many = command.HowMany(runs, seed, jobs, processes, twice_every, until_found, shrink_runs)
     leave(command.chaos(scenario, settings, how_many, dask, out, corpus, as_is, budget, as_json))
