@@ -5,8 +5,8 @@ from collections.abc import Iterator
 
 from onehop.checking.snapshot import Snapshot
 from onehop.contracts.fault_section import KINDS
-from onehop.contracts.messages import Action, DeliveryStatus, Note, Truth
-from onehop.contracts.team import LossReason, Mode, Shape
+from onehop.contracts.messages import Action, DeliveryStatus, Truth
+from onehop.contracts.team import Mode, Shape
 
 _NOTES = {
     "elected": "a robot is elected leader",
@@ -37,11 +37,10 @@ _LOST = {
 _MODES = {mode: f"a robot is in mode {mode.value}" for mode in Mode}
 _SHAPES = {shape: f"a team drives as {shape.value}" for shape in Shape}
 _FAULTS = {kind: f"a fault of kind {kind} begins" for kind in KINDS}
-_REASONS = {reason: f"a follower is given up: {reason.value}" for reason in LossReason}
 
 SOMETIMES: tuple[str, ...] = (
     *_NOTES.values(), _TWO, _THREE, _LEADERLESS, _DIED_LEADING, _DIED_ELECTED, _DIED_COLUMN,
-    _FAULT_IN_SETUP, _HURRY, _RELAYED, *_REASONS.values(), *_LOST.values(), *_MODES.values(),
+    _FAULT_IN_SETUP, _HURRY, _RELAYED, *_LOST.values(), *_MODES.values(),
     *_SHAPES.values(), *_FAULTS.values(),
 )  # fmt: skip
 """Everything that is looked for."""
@@ -101,13 +100,7 @@ class Sometimes:
         if 0.0 <= status.throughput_bps < status.threshold_bps:
             yield _HURRY
         for note in action.notes:
-            yield from self._of_note(tick, robot, note)
-
-    def _of_note(self, tick: int, robot: int, note: Note) -> Iterator[str]:
-        if note.kind in _NOTES:
-            yield _NOTES[note.kind]
-        if note.kind == "elected":
-            self._elected[robot] = tick
-        reason = note.data.get("reason")
-        if note.kind == "lost_follower" and reason in set(LossReason):
-            yield _REASONS[LossReason(reason)]
+            if note.kind in _NOTES:
+                yield _NOTES[note.kind]
+            if note.kind == "elected":
+                self._elected[robot] = tick
