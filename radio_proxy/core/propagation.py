@@ -85,8 +85,8 @@ class Propagation:
     ) -> None:
         """Take over the poses and faults of a tick; nothing is computed until somebody transmits.
 
-        What was computed holds while all of them stay. tick: when it begins and ends [ns]; robots are at
-        these poses at its end.
+        What was computed holds while all of them stay, unless fast fading asks for the way of a tick.
+        tick: when it begins and ends [ns]; robots are at these poses at its end.
         """
         if self._fast_fading is not None or (
             (present, cuts, jams) != (self._present, self._cuts, self._jams)
