@@ -1,6 +1,9 @@
 """A data message on its way from robot to robot, and what is on record about it until its verdict."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from onehop.contracts.messages import DeliveryStatus, Verdict
 from radio_proxy.core.addresses import RobotId
@@ -93,9 +96,8 @@ class DataMessage:
         )
 
 
-@dataclass(slots=True, eq=False)
-class DataPacket:
-    """A copy of a message that one robot holds, never changed. path, attempts: how it came there.
+class DataPacket(Struct, frozen=True, eq=False):
+    """A copy of a message that one robot holds. path, attempts: how it came there.
 
     route, salvaged: the source route that it carries and how often it was salvaged (MRSR).
     given_up: attempts of each time that the link to its next hop gave it up.
@@ -134,6 +136,14 @@ class DataPacket:
     def afresh(self) -> "DataPacket":
         """A copy that its link gave up, as if nothing had been tried from here."""
         return replace(self, attempts=self.attempts[:-1], given_up=())
+
+    def salvage(self) -> "DataPacket":
+        """A copy that its link gave up, as its holder looks for another route of its own (MRSR)."""
+        return replace(self.afresh(), salvaged=self.salvaged + 1)
+
+    def along(self, route: tuple[RobotId, ...]) -> "DataPacket":
+        """The same copy with this source route."""
+        return replace(self, route=route)
 
     def moved(self, holder: RobotId, attempts: int) -> "DataPacket":
         """The copy that the next robot holds, after that many more attempts."""

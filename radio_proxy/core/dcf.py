@@ -42,6 +42,7 @@ class Dcf:
     ) -> None:
         self.timing = timing
         self.medium = medium
+        self._propagation = medium.propagation
         self._judge = medium.receivers.judgement
         self._listener = listener
         self._rules = rules
@@ -112,23 +113,24 @@ class Dcf:
         timing, rules, medium = self.timing, self._rules, self.medium
         fade_db = medium.receivers.fade_db() if rules.fade_per_exchange else None
         alone = not medium.emissions and self._latest_timeout < now + PLCP
-        row, receiver_index = medium.propagation.snr_row(station.index, now), frame.receiver
-        rts_cts = receiver_index != EVERYONE and frame.msdu_bytes > rules.rts_threshold_bytes
+        source, destination = station.index, frame.receiver
+        row = self._propagation.snr_row(source, now)
+        to_everyone = destination == EVERYONE
+        rts_cts = not to_everyone and frame.msdu_bytes > rules.rts_threshold_bytes
         bits = 8 * (RTS_BYTES if rts_cts else timing.mac_header_bytes + frame.msdu_bytes)
-        at_basic_rate = rts_cts or receiver_index == EVERYONE
-        rate_mbps = timing.basic_rate_mbps if at_basic_rate else timing.rate_mbps
-        emission = Emission(station.index, receiver_index, rate_mbps, bits, row, fade_db, now)
-        self._begin(emission, now)
-        alone = alone and self._contention.next_access > now + timing.turnaround
-        if frame.receiver == EVERYONE:
-            delay = delay_ns(self.medium.propagation.farthest(station.index))
+        rate_mbps = timing.basic_rate_mbps if rts_cts or to_everyone else timing.rate_mbps
+        emission = Emission(source, destination, rate_mbps, bits, row, fade_db, now)
+        medium.begin(emission)
+        self._contention.on_busy(emission, now)
+        if to_everyone:
+            delay = delay_ns(self._propagation.farthest(source))
+            exchange = Exchange(station, station, frame, delay, emission)
             end = now + timing.broadcast(frame.msdu_bytes) + delay
-            exchange = Exchange(station, station, frame, delay, fade_db, emission)
             self._at(end, self._on_broadcast_end, exchange)
             return
-        receiver = self._stations[frame.receiver]
-        delay = self.medium.propagation.delay_ns(station.index, receiver.index)
-        exchange = Exchange(station, receiver, frame, delay, fade_db, emission)
+        delay = self._propagation.delay_ns(source, destination)
+        exchange = Exchange(station, self._stations[destination], frame, delay, emission)
+        alone = alone and self._contention.next_access > now + timing.turnaround
         self._start(exchange, rts_cts, alone, now)
 
     def _start(self, exchange: Exchange, rts_cts: bool, alone: bool, now: int) -> None:
@@ -146,7 +148,7 @@ class Dcf:
 
     def _is_undisturbed(self, exchange: Exchange, now: int, end: int) -> bool:
         """Whether nobody can interfere with the exchange, and the receiver may respond (NAV)."""
-        propagation, receiver = self.medium.propagation, exchange.receiver.index
+        propagation, receiver = self._propagation, exchange.receiver.index
         return (
             end <= self.events.horizon
             and propagation.is_sensed_by_all(exchange.sender.index)
@@ -156,13 +158,12 @@ class Dcf:
 
     def _is_cleared(self, exchange: Exchange) -> bool:
         """Judge RTS and CTS of an undisturbed exchange in advance; if one fails, they are played out."""
-        medium, rts, fade_db = self.medium, exchange.emission, exchange.fade_db
-        judge = medium.receivers.judge_alone
-        receiver, sender = rts.receiver, rts.source
+        rts, judge = exchange.emission, self.medium.receivers.judge_alone
+        receiver, sender, fade_db = rts.receiver, rts.source, rts.fade_db
         judged = judge(receiver, rts.row[receiver], fade_db)
         exchange.judged = (judged,)
         if judged[0] is None:
-            mean_db = medium.propagation.mean_snr_row(receiver)[sender]
+            mean_db = self._propagation.mean_snr_row(receiver)[sender]
             answer = judge(sender, mean_db, fade_db)
             exchange.judged = (judged, answer)
             if answer[0] is None:
@@ -174,21 +175,16 @@ class Dcf:
         exchange.undisturbed = False
         return False
 
-    def _begin(self, emission: Emission, now: int) -> None:
-        self.medium.begin(emission)
-        self._contention.on_busy(emission, now)
-
     def _respond(
         self, exchange: Exchange, responder: Station, rate_mbps: float, size_bytes: int, now: int
     ) -> None:
         """The next frame of an exchange begins."""
-        index = responder.index
-        ends = exchange.sender.index, exchange.receiver.index
-        row, bits = self.medium.propagation.snr_row(index, now), 8 * size_bytes
-        other = ends[0] if index == ends[1] else ends[1]
-        emission = Emission(index, other, rate_mbps, bits, row, exchange.fade_db, now)
-        exchange.emission = emission
-        self._begin(emission, now)
+        source, last = responder.index, exchange.emission
+        row = self._propagation.snr_row(source, now)
+        answer = Emission(source, last.source, rate_mbps, 8 * size_bytes, row, last.fade_db, now)
+        exchange.emission = answer
+        self.medium.begin(answer)
+        self._contention.on_busy(answer, now)
 
     def _end(self, emission: Emission, now: int) -> None:
         """An emission ends; `on_idle` must follow when it has been judged."""
@@ -202,7 +198,7 @@ class Dcf:
 
     def _await_response(self, responder: Station, now: int) -> None:
         """A frame has ended, and its addressee transmits the next one after a SIFS."""
-        response = self.medium.propagation.snr_row(responder.index, now + self.timing.sifs)
+        response = self._propagation.snr_row(responder.index, now + self.timing.sifs)
         self._contention.on_idle(now, response)
 
     def _on_broadcast_end(self, exchange: Exchange, now: int) -> None:

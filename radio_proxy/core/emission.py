@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass, field
 
+from msgspec import Struct
+
 from onehop.contracts.messages import DeliveryStatus
 from radio_proxy.core.addresses import StationIndex
 from radio_proxy.core.event_queue import NEVER
@@ -29,8 +31,7 @@ class Reception:
     judged: dict[StationIndex, Judgement] = field(default_factory=dict)
 
 
-@dataclass(slots=True, eq=False)
-class Emission:
+class Emission(Struct, eq=False):
     """One frame that is transmitted from `start` to `end` [ns]; end is NEVER while it is in progress.
 
     receiver: its addressee or EVERYONE. rate_mbps, bits: of the MAC frame, after the PLCP header.

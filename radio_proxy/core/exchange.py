@@ -26,7 +26,7 @@ class Listener(Protocol):
 
 @dataclass(slots=True, eq=False)
 class Exchange:
-    """One attempt to send a frame. delay: of propagation [ns]; fade_db, emission: as in the medium.
+    """One attempt to send a frame. delay: of propagation [ns]. emission: its frame that was sent last.
 
     undisturbed: nobody can interfere with it. after_cts: its data follows a CTS. reservation: by its
     RTS. judged: frames that were judged before they end.
@@ -36,7 +36,6 @@ class Exchange:
     receiver: Station
     frame: Frame
     delay: int
-    fade_db: float | None
     emission: Emission
     undisturbed: bool = False
     after_cts: bool = False

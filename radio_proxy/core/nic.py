@@ -3,9 +3,8 @@
 from collections.abc import Callable
 from typing import Any
 
-from onehop.contracts.messages import DeliveryStatus, TransmitRequest
+from onehop.contracts.messages import TransmitRequest
 from radio_proxy.core.addresses import RobotId
-from radio_proxy.core.data_message import DataPacket
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.event_queue import Callback, EventQueue
@@ -32,9 +31,9 @@ class Nic:
         self.incarnation = incarnation
         self._down = False
         self._link = link
-        self._deliveries = deliveries
+        self.deliver, self.drop = deliveries.deliver, deliveries.drop
         self._events = events
-        self._draws = draws
+        self.uniform = draws.uniform
         self._request_of = request_of
 
     def shut_down(self) -> None:
@@ -44,21 +43,12 @@ class Nic:
     def send(self, packet: object, next_hop: RobotId, size_bytes: int, kind: str, now: int) -> bool:
         return self._link.send(self.robot, packet, next_hop, size_bytes, kind, now)
 
-    def deliver(self, data: DataPacket, now: int) -> None:
-        self._deliveries.deliver(data, now)
-
-    def drop(self, data: DataPacket, status: DeliveryStatus) -> None:
-        self._deliveries.drop(data, status)
-
     def at(self, time_ns: int, event: Callback, argument: Any) -> None:
         def unless_down(given: Any, now: int) -> None:
             if not self._down:
                 event(given, now)
 
         self._events.at(time_ns, unless_down, argument)
-
-    def uniform(self) -> float:
-        return self._draws.uniform()
 
     def speed(self) -> float:
         return self._request_of(self.robot).speed

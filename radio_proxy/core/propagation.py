@@ -42,8 +42,8 @@ def walls_crossed(walls: tuple[Wall, ...], x0: float, y0: float, x1: float, y1: 
 class Propagation:
     """Who is where in this tick, and at which mean SNR each receives each. robots: sorted ids.
 
-    noise_rise_db: noise at every station above the floor, by jams [dB]. shadowing, fast_fading: None
-    where there is none.
+    stations: theirs, all of them. noise_rise_db: noise at every station above the floor, by jams [dB].
+    shadowing, fast_fading: None where there is none.
     """
 
     def __init__(
@@ -55,10 +55,11 @@ class Propagation:
         fast_fading: FastFading | None = None,
     ) -> None:
         self.budget = budget
+        self._reach = budget.reach
         self._shadowing = shadowing
         self._fast_fading = fast_fading
-        self._index: dict[int, StationIndex] = {r: StationIndex(i) for i, r in enumerate(robots)}
-        self._count = len(robots)
+        self.stations = tuple([StationIndex(i) for i in range(len(robots))])
+        self._index: dict[int, StationIndex] = dict(zip(robots, self.stations, strict=True))
         self._walls = walls if budget.wall_loss_db else ()
         self._positions: dict[StationIndex, tuple[float, float]] = {}
         self._rows: dict[StationIndex, list[float]] = {}
@@ -66,8 +67,9 @@ class Propagation:
         self._delays: dict[tuple[StationIndex, StationIndex], int] = {}
         self._farthest: dict[StationIndex, float] = {}
         self._cells: dict[tuple[int, int], list[tuple[StationIndex, float, float]]] = {}
+        self._near: dict[tuple[int, int], list[tuple[StationIndex, float, float]]] = {}
         self._cuts: tuple[Cut, ...] = ()
-        self.noise_rise_db: list[float] = [0.0] * self._count
+        self.noise_rise_db: list[float] = [0.0] * len(robots)
         self._jams: tuple[Jam, ...] = ()
         self._present: tuple[Presence, ...] = ()
         self._before: tuple[Presence, ...] = ()
@@ -83,13 +85,17 @@ class Propagation:
     ) -> None:
         """Take over the poses and faults of a tick; nothing is computed until somebody transmits.
 
+        What was computed holds while all of them stay, unless fast fading asks for the way of a tick.
         tick: when it begins and ends [ns]; robots are at these poses at its end.
         """
+        if self._fast_fading is not None or (
+            (present, cuts, jams) != (self._present, self._cuts, self._jams)
+        ):
+            self._stale = True
         self._before, self._present = self._present, present
         self._tick = tick
         self._cuts = cuts
         self._jams = jams
-        self._stale = True
 
     def mean_snr_row(self, sender: StationIndex) -> list[float]:
         """Mean SNR at every station of what `sender` emits in this tick [dB]."""
@@ -121,9 +127,10 @@ class Propagation:
 
     def delay_ns(self, a: StationIndex, b: StationIndex) -> int:
         """Propagation delay between two stations in this tick."""
-        delay = self._delays.get((a, b))
-        if self._stale or delay is None:
-            delay = self._delays[a, b] = delay_ns(self.distance(a, b))
+        delay = None if self._stale else self._delays.get((a, b))
+        if delay is None:
+            delay = delay_ns(self.distance(a, b))
+            self._delays[a, b] = self._delays[b, a] = delay
         return delay
 
     def distance(self, a: StationIndex, b: StationIndex) -> float:
@@ -144,7 +151,7 @@ class Propagation:
             sensed = False
             if self._fast_fading is None and sender in self._positions:
                 row, least = self.mean_snr_row(sender), self.budget.carrier_sense_db
-                sensed = all(row[i] >= least for i in self._positions)
+                sensed = min([row[i] for i in self._positions]) >= least
             self._sensed_by_all[sender] = sensed
         return sensed
 
@@ -169,8 +176,9 @@ class Propagation:
         self._delays = {}
         self._farthest = {}
         self._cells = {}
+        self._near = {}
         self._positions = {}
-        reach = self.budget.reach
+        reach = self._reach
         for presence in self._present:
             index = self._index[presence.robot]
             x, y = presence.pose.x, presence.pose.y
@@ -183,12 +191,12 @@ class Propagation:
             before = {self._index[p.robot]: (p.pose.x, p.pose.y) for p in self._before}
             self._fast_fading.move(self._places(before), self._places({}), *self._tick)
         if self._jams or any(self.noise_rise_db):
-            self.noise_rise_db = [self._noise_rise(StationIndex(i)) for i in range(self._count)]
+            self.noise_rise_db = [self._noise_rise(station) for station in self.stations]
 
     def _places(self, other: dict[StationIndex, tuple[float, float]]) -> list[tuple[float, float]]:
         """Where the stations are, or elsewhere; the origin for the absent."""
         found = {**self._positions, **other}
-        return [found.get(StationIndex(i), (0.0, 0.0)) for i in range(self._count)]
+        return [found.get(station, (0.0, 0.0)) for station in self.stations]
 
     def _noise_rise(self, index: StationIndex) -> float:
         position = self._positions.get(index)
@@ -202,31 +210,38 @@ class Propagation:
 
     def _compute_row(self, sender: StationIndex) -> list[float]:
         """The row of a sender; the path loss of mean_snr_db, by squared distances, for all in reach."""
-        row = [SILENT_DB] * self._count
-        budget = self.budget
-        reach, nearest = budget.reach, budget.reference_distance * budget.reference_distance
+        row = [SILENT_DB] * len(self.stations)
+        budget, reach = self.budget, self._reach
+        nearest = budget.reference_distance * budget.reference_distance
         reference_db, slope_db = budget.snr_reference_db, 5.0 * budget.exponent
         x, y = self._positions[sender]
         shadows = self._shadowing.row_db(sender) if self._shadowing is not None else None
-        column, line = math.floor(x / reach), math.floor(y / reach)
-        for near in ((column + dx, line + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)):
-            for other, there_x, there_y in self._cells.get(near, ()):
-                east, north = there_x - x, there_y - y
-                square = east * east + north * north
-                if square <= nearest:
-                    row[other] = reference_db
-                elif square <= reach * reach:
-                    row[other] = reference_db - slope_db * elementary.log10(square / nearest)
-                else:
-                    continue
-                if shadows is not None:
-                    row[other] += shadows[other]
-                if self._walls:
-                    crossed = walls_crossed(self._walls, x, y, there_x, there_y)
-                    row[other] -= crossed * budget.wall_loss_db
+        for other, there_x, there_y in self._stations_near(x, y):
+            east, north = there_x - x, there_y - y
+            square = east * east + north * north
+            if square <= nearest:
+                row[other] = reference_db
+            elif square <= reach * reach:
+                row[other] = reference_db - slope_db * elementary.log10(square / nearest)
+            else:
+                continue
+            if shadows is not None:
+                row[other] += shadows[other]
+            if self._walls:
+                crossed = walls_crossed(self._walls, x, y, there_x, there_y)
+                row[other] -= crossed * budget.wall_loss_db
         row[sender] = OWN_DB
         self._apply_cuts(sender, row)
         return row
+
+    def _stations_near(self, x: float, y: float) -> list[tuple[StationIndex, float, float]]:
+        """Stations and their places: all that are in reach of a place, and a few more."""
+        column, line = cell = math.floor(x / self._reach), math.floor(y / self._reach)
+        near = self._near.get(cell)
+        if near is None:
+            around = [(column + dx, line + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
+            near = self._near[cell] = [one for each in around for one in self._cells.get(each, ())]
+        return near
 
     def _apply_cuts(self, sender: StationIndex, row: list[float]) -> None:
         for cut in self._cuts:

@@ -52,6 +52,7 @@ class Receivers:
         detectable_db = rules.preamble_sinr_db
         self._detectable_db = self._threshold_db if detectable_db is None else detectable_db
         self._capture_db = rules.capture_db
+        self._stations = propagation.stations
         self._locked_on: dict[StationIndex, Emission] = {}
         self.locks_are_certain = self._threshold_db >= CERTAIN_SINR_DB
 
@@ -96,8 +97,7 @@ class Receivers:
             judged = reception.judged[station] = self._judge_locked(emission, station)
             if judged[0] is not None and reception.headers[station]:
                 errors.append(station)
-        others = range(len(emission.row)) if emission.receiver == EVERYONE else (emission.receiver,)
-        for station in map(StationIndex, others):
+        for station in self._stations if emission.receiver == EVERYONE else (emission.receiver,):
             if station != emission.source and station not in reception.judged:
                 reception.judged[station] = self._judge_unlocked(emission, station)
         reception.overlaps.clear()
@@ -110,12 +110,12 @@ class Receivers:
 
         A frame that nobody looked at yet overlaps no other, and a receiver was free for it.
         """
-        reception, fade_db, mean_db = emission.reception, emission.fade_db, emission.row[station]
-        if reception is not None:
-            if station in reception.judged:
-                return reception.judged[station]
-            fade_db = self._level_db(emission, station) - mean_db
-        return self.judge_alone(station, mean_db, fade_db)
+        reception, mean_db = emission.reception, emission.row[station]
+        if reception is None:
+            return self.judge_alone(station, mean_db, emission.fade_db)
+        if station in reception.judged:
+            return reception.judged[station]
+        return self.judge_alone(station, mean_db, self._level_db(emission, station) - mean_db)
 
     def judge_alone(self, station: StationIndex, mean_db: float, fade_db: float | None) -> Judgement:
         """A frame that no other overlaps, at a receiver that is free; only where locks are certain."""
@@ -171,15 +171,14 @@ class Receivers:
         """Lock those for whom the signal is strong enough alone, and enough above its rivals."""
         detected = emission.start + DETECTION
         reception = _reception(emission)
-        reception.locked = []
+        reception.locked = locked = []
         rivals = [other for other in reception.overlaps if other.end > detected]
         deaf, locked_on, rises_db = reception.deaf, self._locked_on, self._propagation.noise_rise_db
-        for index, mean_db in enumerate(emission.row):
-            station = StationIndex(index)
+        for station, mean_db in zip(self._stations, emission.row, strict=True):
             if mean_db <= SILENT_DB or station in deaf or station in locked_on:
                 continue
             level_db = self._level_db(emission, station)
-            if level_db - rises_db[index] < self._threshold_db or station == emission.source:
+            if level_db - rises_db[station] < self._threshold_db or station == emission.source:
                 continue
             least_db = level_db - self._detectable_db
             for rival in rivals:
@@ -187,7 +186,7 @@ class Receivers:
                     break
             else:
                 if not rivals or self._noise_db(station, rivals) <= least_db:
-                    reception.locked.append(station)
+                    locked.append(station)
                     locked_on[station] = emission
 
     def _release(self, station: StationIndex) -> None:
@@ -216,15 +215,15 @@ class Receivers:
 
     def _level_db(self, emission: Emission, station: StationIndex) -> float:
         """Power of a frame at a station over the noise floor: mean and fading, drawn once."""
-        mean_db = emission.row[station]
-        if emission.fade_db is not None:
-            return mean_db + emission.fade_db
-        if not self._sigma_db or mean_db <= SILENT_DB:
-            return mean_db
         levels_db = (emission.reception or _reception(emission)).levels_db
         level_db = levels_db.get(station)
         if level_db is None:
-            level_db = levels_db[station] = mean_db + self.fade_db()
+            level_db, fade_db = emission.row[station], emission.fade_db
+            if fade_db is not None:
+                level_db += fade_db
+            elif level_db > SILENT_DB and self._sigma_db:
+                level_db += self._sigma_db * self._draws.normal()
+            levels_db[station] = level_db
         return level_db
 
     def _noise_db(self, station: StationIndex, others: list[Emission]) -> float:

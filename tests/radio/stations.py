@@ -12,6 +12,7 @@ from radio_proxy.core.contention import Frame
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.emission import Emission
+from radio_proxy.core.fast_fading import fast_fading
 from radio_proxy.core.link_budget import LinkBudget, link_budget
 from radio_proxy.core.link_rules import link_rules
 from radio_proxy.core.medium import Medium
@@ -56,16 +57,17 @@ class Cell:
         take_shortcuts: bool = True,
     ) -> None:
         robots = tuple(range(1, len(places) + 1))
-        propagation = Propagation(link_budget(section), robots, ())
+        fades = fast_fading(section, 1)
+        self.propagation = Propagation(link_budget(section), robots, (), fast_fading=fades)
         still = Twist(0.0, 0.0)
         presences = [
             Presence(r, 0, Pose(x, y, 0.0), still, False)
             for r, (x, y) in zip(robots, places, strict=True)
         ]
-        propagation.update(tuple(presences), cuts, ())
+        self.propagation.update(tuple(presences), cuts, ())
         draws = Draws(generator(1, "radio"))
         rules = link_rules(section)
-        medium = Medium(propagation, draws, rules)
+        medium = Medium(self.propagation, draws, rules)
         self.dcf = Dcf(len(robots), dsss(section), medium, draws, self, rules, take_shortcuts)
         self.statuses: dict[tuple[int, int], DeliveryStatus | None] = {}
         self.arrived: list[tuple[int, int, Frame]] = []

@@ -6,28 +6,14 @@ import pytest
 
 from onehop.contracts.messages import DeliveryStatus
 from radio_proxy.core.data_message import DataPacket
-from radio_proxy.core.routing.mrdv import MrdvRouter
 from radio_proxy.core.routing.mrdv_limits import BUFFER_MESSAGES, NET_DIAMETER
 from radio_proxy.core.routing.mrdv_packets import RREP_BYTES, RREQ_BYTES, Rrep, Rreq, rerr_bytes
 from radio_proxy.core.routing.mrdv_table import ACTIVE_ROUTE_NS, DELETE_PERIOD_NS, RouteTable
 from tests.radio.net import HOP_NS, MS, Net, chain, receive
+from tests.radio.routers import mrdv_request as request
+from tests.radio.routers import mrdv_router as router
 
 LONG = 60_000 * MS
-
-
-def router(net: Net, robot: int) -> MrdvRouter:
-    found = net.nics[robot].router
-    assert isinstance(found, MrdvRouter)
-    return found
-
-
-def request(destination: int, **changes: object) -> Rreq:
-    """A request of robot 9 as its neighbour 8 passes it on."""
-    fields = {
-        "origin": 9, "origin_sequence": 5, "number": 1, "destination": destination, "sequence": None,
-        "hops": 1, "ttl": 5, "normal": False, "destination_only": False,
-    }  # fmt: skip
-    return Rreq(**{**fields, **changes})  # type: ignore[arg-type]
 
 
 def test_packet_sizes() -> None:

@@ -5,26 +5,12 @@ import pytest
 from onehop.contracts.messages import BROADCAST, DeliveryStatus
 from radio_proxy.core.data_message import DataPacket
 from radio_proxy.core.routing.links import REPEATED_EXCHANGES
-from radio_proxy.core.routing.mrdv import MrdvRouter
 from radio_proxy.core.routing.mrdv_packets import Rerr, Rreq
 from tests.radio.net import MS, Net, chain, lose_link, receive
+from tests.radio.routers import mrdv_request as request
+from tests.radio.routers import mrdv_router as router
 
 LONG = 60_000 * MS
-
-
-def router(net: Net, robot: int) -> MrdvRouter:
-    found = net.nics[robot].router
-    assert isinstance(found, MrdvRouter)
-    return found
-
-
-def request(destination: int, **changes: object) -> Rreq:
-    """A request of robot 9 as its neighbour 8 passes it on."""
-    fields = {
-        "origin": 9, "origin_sequence": 5, "number": 1, "destination": destination, "sequence": None,
-        "hops": 1, "ttl": 5, "normal": False, "destination_only": False,
-    }  # fmt: skip
-    return Rreq(**{**fields, **changes})  # type: ignore[arg-type]
 
 
 def test_a_broken_link_kills_every_route_over_it_one_number_newer() -> None:

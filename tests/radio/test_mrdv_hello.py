@@ -4,18 +4,12 @@ from itertools import pairwise
 
 from onehop.contracts.messages import BROADCAST, DeliveryStatus
 from radio_proxy.core.routing.forwarding import BROADCAST_JITTER_NS
-from radio_proxy.core.routing.mrdv import MrdvRouter
 from radio_proxy.core.routing.mrdv_hello import OFFER_PERIOD_NS
 from radio_proxy.core.routing.mrdv_packets import Hello, Rerr
 from tests.radio.net import MS, Net, chain, receive
+from tests.radio.routers import mrdv_router as router
 
 SECOND = 1_000 * MS
-
-
-def router(net: Net, robot: int) -> MrdvRouter:
-    found = net.nics[robot].router
-    assert isinstance(found, MrdvRouter)
-    return found
 
 
 def next_hop(net: Net, robot: int, destination: int) -> int | None:

@@ -5,29 +5,20 @@ from itertools import pairwise
 import pytest
 
 from onehop.contracts.messages import BROADCAST, DeliveryStatus
-from radio_proxy.core.data_message import DataMessage, DataPacket
+from radio_proxy.core.data_message import DataPacket
 from radio_proxy.core.routing.links import REPEATED_EXCHANGES
-from radio_proxy.core.routing.mrsr import MAX_SALVAGE, SEND_BUFFER, MrsrRouter
+from radio_proxy.core.routing.mrsr import MAX_SALVAGE, SEND_BUFFER
 from radio_proxy.core.routing.mrsr_cache import CACHE_TIMEOUT_NS, PATHS_PER_DESTINATION, RouteCache
 from radio_proxy.core.routing.mrsr_packets import Rerr, Rrep, Rreq, source_route_bytes, without_loops
 from tests.radio.net import HOP_NS, MS, Net, chain, lose_link, receive
+from tests.radio.routers import mrsr_data as data
+from tests.radio.routers import mrsr_router as router
 
 LONG = 60_000 * MS
 
 
-def router(net: Net, robot: int) -> MrsrRouter:
-    found = net.nics[robot].router
-    assert isinstance(found, MrsrRouter)
-    return found
-
-
 def request(target: int, *route: int, number: int = 1, ttl: int = 5, normal: bool = False) -> Rreq:
     return Rreq(number, target, route, ttl, normal)
-
-
-def data(source: int, path: tuple[int, ...], route: tuple[int, ...], salvaged: int = 0) -> DataPacket:
-    message = DataMessage(1, source, route[-1], b"", 800, 0)
-    return DataPacket(message, path, (1,) * (len(path) - 1), route, salvaged)
 
 
 def test_packet_sizes() -> None:

@@ -1,20 +1,9 @@
 """What MRSR learns from what it overhears (RFC 4728, 3.3.1 and 3.4.3)."""
 
-from radio_proxy.core.data_message import DataMessage, DataPacket
-from radio_proxy.core.routing.mrsr import MrsrRouter
 from radio_proxy.core.routing.mrsr_packets import Rerr, Rrep, Rreq
 from tests.radio.net import MS, Net, chain
-
-
-def router(net: Net, robot: int) -> MrsrRouter:
-    found = net.nics[robot].router
-    assert isinstance(found, MrsrRouter)
-    return found
-
-
-def data(source: int, path: tuple[int, ...], route: tuple[int, ...], salvaged: int = 0) -> DataPacket:
-    message = DataMessage(1, source, route[-1], b"", 800, 0)
-    return DataPacket(message, path, (1,) * (len(path) - 1), route, salvaged)
+from tests.radio.routers import mrsr_data as data
+from tests.radio.routers import mrsr_router as router
 
 
 def test_an_overheard_reply_teaches_the_way_to_everyone_on_it() -> None:

@@ -189,7 +189,7 @@ class MrsrRouter:
             back = without_loops(packet.path)[::-1]
             if len(back) > 1:
                 self._send_rerr(Rerr(self._me, next_hop, back), now)
-        again = replace(packet.afresh(), salvaged=packet.salvaged + 1)
+        again = packet.salvage()
         if again.salvaged <= MAX_SALVAGE and self._send_along_cache(again, now):
             return
         if at_origin and packet.message.discoveries < MAX_DISCOVERIES:
@@ -207,7 +207,7 @@ class MrsrRouter:
         route = self.cache.find(data.message.destination, now)
         if route is None:
             return False
-        self._send_on(replace(data, route=route), now)
+        self._send_on(data.along(route), now)
         return True
 
     def _send_on(self, data: DataPacket, now: int) -> None:
