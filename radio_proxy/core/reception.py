@@ -20,6 +20,7 @@ from radio_proxy.core.addresses import EVERYONE, StationIndex
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.emission import Emission, Judgement, Reception
 from radio_proxy.core.error_rates import CERTAIN_SINR_DB, frame_success
+from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.link_rules import LinkRules
 from radio_proxy.core.propagation import SILENT_DB, Propagation
 
@@ -150,7 +151,7 @@ class Receivers:
         """Whether PHY-RXSTART of a frame has been indicated to a station: it read its PLCP header."""
         if station == emission.source or now < emission.start + PLCP:
             return False
-        if emission.end > now:
+        if emission.end == NEVER:
             self.detect([emission], now)
         reception = _reception(emission)
         if reception.locked is None:
