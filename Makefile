@@ -29,10 +29,10 @@ check: setup
 	$(BIN)/lint-imports
 
 fast: setup
-	$(BIN)/pytest -q -m 'not slow and not live'
+	$(BIN)/pytest -q -n auto --dist loadscope -m 'not slow and not live'
 
 slow: setup
-	$(BIN)/pytest -q -m 'slow and not live and not campaign'
+	$(BIN)/pytest -q -n auto --dist loadscope -m 'slow and not live and not campaign'
 
 live: setup
 	$(BIN)/pytest -q -m 'live and not campaign'

@@ -183,3 +183,14 @@ def test_the_radio_keeps_its_promises(machine: type[RadioMachine]) -> None:
 @pytest.mark.parametrize("machine", [DirectMachine, MrdvMachine, MrsrMachine])
 def test_the_radio_keeps_its_promises_in_many_missions(machine: type[RadioMachine]) -> None:
     explore(machine, 120)
+
+
+def test_no_station_is_left_locked_on_a_frame_that_is_over() -> None:
+    """A reservation without its data frame is reset, and asks whether a frame had begun by then."""
+    machine = MrdvMachine()
+    machine.begin([(0, 0), (0, 0), (22, 0), (0, 0), (0, 0)], 0, {})
+    machine.jam((0, 5), -80.0)
+    machine.submit(4, 1, 20)
+    machine.submit(3, 4, 20)
+    machine.step(1)
+    machine.receivers_are_locked_on_frames_in_progress_that_others_sent()
