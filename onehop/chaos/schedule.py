@@ -5,19 +5,23 @@ ends, and what is broken for good (dead, stopped, cut off) are others. Without i
 good, and a mission can only be asked for what it must never do.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from onehop.chaos.places import Places
+from onehop.chaos.places import Places, Ways
 from onehop.contracts.fault_section import DIRECTIONS, FaultEvent, FaultKind, FaultSection
 from onehop.contracts.randomness import generator
+from onehop.contracts.sections import Point
 
 KIND_SHARE = 0.3
 """Share of missions in which a kind of trouble occurs."""
 
 MOST_OF_A_KIND = 3
+
+_DRAWS = 20
 
 EVENTS: tuple[FaultEvent, ...] = ("leader elected", "formed", "narrow", "arrived")
 
@@ -28,13 +32,14 @@ Faults = list[FaultSection]
 class Dice:
     """Draws one kind of trouble. core: robots that nothing breaks for good; all others are doomed.
 
-    until_s: when the chaos ends [s].
+    ways: to the goal. until_s: when the chaos ends [s].
     """
 
     random: np.random.Generator
     robots: tuple[int, ...]
     core: tuple[int, ...]
     places: Places
+    ways: Ways
     until_s: float
     budget: bool
 
@@ -56,6 +61,11 @@ class Dice:
             return 0.0
         return self.number(0.1, max(0.1, min(longest_s, self.until_s - at_s)))
 
+    def reachable(self) -> Point | None:
+        """A free place from which there is a way to the goal."""
+        draws = (self.places.drawn(self.random) for _ in range(_DRAWS))
+        return next((one for one in draws if one and math.isfinite(self.ways.length(one))), None)
+
     def some(self, of: tuple[int, ...], most: int = 12) -> tuple[int, ...]:
         """At least one of some robots."""
         count = int(self.random.integers(1, min(most, len(of)) + 1))
@@ -66,16 +76,19 @@ class Dice:
 
 
 def draw_faults(
-    seed: int, robots: tuple[int, ...], places: Places, until_s: float, budget: bool
+    seed: int, robots: tuple[int, ...], places: Places, ways: Ways, until_s: float, budget: bool
 ) -> tuple[FaultSection, ...]:
-    """The faults of a seed, in order of their times, those that wait for an event last."""
+    """The faults of a seed, in order of their times, those that wait for an event last.
+
+    ways: to the goal. until_s: when those that end have ended [s].
+    """
     chosen = generator(seed, "chaos/core")
     size = int(chosen.integers(1, len(robots) + 1))
     core = tuple(sorted(int(robot) for robot in chosen.permutation(robots)[:size]))
     faults: Faults = []
     for kind, draw in TROUBLES.items():
         random = generator(seed, f"chaos/{kind}")
-        dice = Dice(random, robots, core if budget else (), places, until_s, budget)
+        dice = Dice(random, robots, core if budget else (), places, ways, until_s, budget)
         if random.random() < KIND_SHARE:
             for _ in range(int(random.integers(1, MOST_OF_A_KIND + 1))):
                 faults += draw(dice)
@@ -122,7 +135,7 @@ def _hold(dice: Dice) -> Faults:
 
 
 def _kidnap(dice: Dice) -> Faults:
-    place = dice.places.drawn(dice.random)
+    place = dice.reachable()
     if place is None:
         return []
     robots, turn = dice.one_of(dice.robots), dice.number(-180.0, 180.0)

@@ -76,7 +76,8 @@ def draw_mission(base: Bundle, seed: int, budget: bool) -> Bundle:
     )
     drawn, walls, files = _on_some_ground(stream(seed, "map"), drawn, base)
     places = Places(walls, drawn.planner.inflation)
-    way = places.ways_to((drawn.goal.x, drawn.goal.y)).length((drawn.start.x, drawn.start.y))
+    ways = places.ways_to((drawn.goal.x, drawn.goal.y))
+    way = ways.length((drawn.start.x, drawn.start.y))
     until_s = round(float(stream(seed, "until").uniform(*CHAOS_S)), 1)
     clock = dataclasses.replace(
         drawn.clock,
@@ -84,7 +85,7 @@ def draw_mission(base: Bundle, seed: int, budget: bool) -> Bundle:
             until_s + team.setup_timeout + SLACK_S + WAY_FACTOR * way / robot.leader_speed
         ),
     )
-    faults = draw_faults(seed, team.robots, places, until_s, budget)
+    faults = draw_faults(seed, team.robots, places, ways, until_s, budget)
     return Bundle(dataclasses.replace(drawn, clock=clock, faults=faults), files)
 
 

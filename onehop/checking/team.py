@@ -173,17 +173,18 @@ class Team:
     ) -> str | None:
         """Within one epoch a robot goes over to another roster only if it hears it, to a better one.
 
-        Who hears that its leader has left it out joins any team.
+        Who hears that its leader has left it out joins any team, and keeps its own epoch if it is newer.
         """
         before = known.status
         if _same_team(before, status) or Mode.JOINING in (before.mode, status.mode):
             return None
         mine = Roster(status.epoch, status.members)
-        if all(order.roster != mine for _, order in orders):
-            return f"robot {robot} changes its roster within epoch {status.epoch} and was not told so"
         is_left_out = any(
             source == before.leader and robot not in order.roster.members for source, order in orders
         )
+        told = [order.roster for _, order in orders]
+        if mine not in told and not (is_left_out and mine.members in [one.members for one in told]):
+            return f"robot {robot} changes its roster within epoch {status.epoch} and was not told so"
         settled = (known.heard and not is_left_out) or before.leader == robot
         if settled and not mine.is_larger(Roster(before.epoch, before.members)):
             return f"robot {robot} leaves its roster for one that is not to be preferred"

@@ -82,15 +82,20 @@ def plant(bug: Bug, folder: Path) -> None:
     path.write_text(text.replace(bug.right, bug.wrong), encoding="utf-8")
 
 
-def hunt(bug: Bug, folder: Path, runs: int, jobs: int) -> dict[str, Any]:
-    """Let chaos look for a bug in the copy; what it prints as JSON."""
-    plant(bug, folder)
-    command = [sys.executable, "-m", "onehop", "chaos", "scenarios/map1.toml", "--until-found", "--json"]
-    command += ["--runs", str(runs), "--jobs", str(jobs), "--twice-every", "0", "--out", "out"]
+def run_in(folder: Path, *arguments: str) -> "subprocess.CompletedProcess[str]":
+    """`onehop chaos` of a copy."""
+    command = [sys.executable, "-m", "onehop", "chaos", *arguments]
     environment = {**os.environ, "PYTHONPATH": str(folder)}
-    done = subprocess.run(
+    return subprocess.run(
         command, cwd=folder, env=environment, capture_output=True, text=True, check=False
     )
+
+
+def hunt(bug: Bug, folder: Path, runs: int, jobs: int, shrink_runs: int = 400) -> dict[str, Any]:
+    """Let chaos look for a bug in the copy; what it prints as JSON."""
+    plant(bug, folder)
+    numbers = ("--runs", str(runs), "--jobs", str(jobs), "--shrink-runs", str(shrink_runs))
+    done = run_in(folder, "scenarios/map1.toml", "--until-found", "--json", *numbers, "--out", "out")
     if done.returncode == 2 or not done.stdout:
         raise ValueError(done.stderr)
     told: dict[str, Any] = json.loads(done.stdout)
