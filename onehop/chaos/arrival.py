@@ -14,11 +14,12 @@ def why_it_should_have(bundle: Bundle, summary: dict[str, Any], end: Disturbance
     """What speaks against a mission that has failed, in a sentence; None if it is excused.
 
     end: what was broken when it ended. Whoever is whole then must have a way to the goal past all who
-    are not, and must have had the time for it since it became quiet.
+    are not, and must have had the time for it since it became quiet. It is excused as well when a leader
+    has reached the goal since: then others were under way when the time was up.
     """
     scenario = bundle.scenario
     whole = [one for one in end.present if one.robot in end.whole]
-    if summary["outcome"] != "failed" or not whole:
+    if summary["outcome"] != "failed" or not whole or end.arrived_at >= end.quiet_since:
         return None
     quiet_s = end.quiet_since * scenario.clock.period_ns / 1e9
     places = Places(load_map(scenario.map, bundle.files), scenario.planner.inflation)

@@ -14,7 +14,8 @@ class Disturbance:
 
     quiet_since: first tick from which on nothing begins or ends to be broken. present: who is there now.
     whole: of these, who runs and is neither held, blind nor slow, nor cut off or fed with garbage.
-    graves: places of those who left, until they are back [m].
+    graves: places of those who left, until they are back [m]. arrived_at: last tick at which a leader said
+    that it had reached the goal, -1 if none has.
     """
 
     def __init__(self) -> None:
@@ -22,6 +23,7 @@ class Disturbance:
         self.present: tuple[Presence, ...] = ()
         self.whole: set[int] = set()
         self.graves: dict[int, Point] = {}
+        self.arrived_at = -1
         self._lost_in_space: dict[int, list[int]] = {}
         self._state: object = None
 
@@ -45,6 +47,8 @@ class Disturbance:
         )  # fmt: skip
         if state != self._state or truth.faults:
             self._state, self.quiet_since = state, now.tick
+        if any(note.kind == "arrived" for action in now.actions.values() for note in action.notes):
+            self.arrived_at = now.tick
         for robot in _lost_in_space(truth):
             self._lost_in_space.setdefault(robot, []).append(now.tick)
 
