@@ -14,8 +14,8 @@ class Disturbance:
 
     quiet_since: first tick from which on nothing begins or ends to be broken. present: who is there now.
     whole: of these, who runs and is neither held, blind nor slow, nor cut off or fed with garbage.
-    graves: places of those who left, until they are back [m]. arrived_at: last tick at which a leader said
-    that it had reached the goal, -1 if none has.
+    graves: places of those who left, until they are back [m]. arrived_at: last tick at which a leader
+    said that it had reached the goal, -1 if none has.
     """
 
     def __init__(self) -> None:
