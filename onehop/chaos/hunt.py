@@ -98,6 +98,11 @@ class Hunt:
         self.wall_s = 0.0
         self.tried_now = 0
 
+    @property
+    def draws(self) -> bool:
+        """Whether missions are drawn, and not only taken as they are."""
+        return len(self._wanted.seeds) > 0
+
     def try_missions(self, until_found: bool = False) -> None:
         """Try what the folder has not; whatever ends this, `rows` has what was tried.
 

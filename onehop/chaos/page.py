@@ -45,8 +45,7 @@ def _page(hunt: Hunt) -> str:
 <p class="note">{_BLIND_SPOTS}</p>
 <h2>What must hold</h2>{_properties(hunt)}
 <h2>What was broken</h2>{"".join(map(_failure, hunt.found)) or "<p>Nothing.</p>"}
-<h2>What should happen in some mission</h2>
-<p>Whatever never happened has not been tried.</p>{_sometimes(hunt)}
+{_sometimes(hunt) if hunt.draws else ""}
 <h2>Faults</h2>{_rows(("kind", "times"), told["faults"].items())}
 <h2>Missions</h2>{_missions(hunt)}
 </body></html>
@@ -108,7 +107,9 @@ def _sometimes(hunt: Hunt) -> str:
         for name in sorted(SOMETIMES, key=lambda name: missions[name])
     )
     head = '<tr><th class="text">what</th><th>missions</th><th>times</th></tr>'
-    return f"<table>{head}{''.join(rows)}</table>"
+    title = "<h2>What should happen in some mission</h2>"
+    note = "<p>Whatever never happened has not been tried.</p>"
+    return f"{title}{note}<table>{head}{''.join(rows)}</table>"
 
 
 def _missions(hunt: Hunt) -> str:

@@ -166,7 +166,9 @@ def _tell(hunt: Hunt, folder: Path, as_json: bool) -> None:
     console.print(f"rate        {told['missions_per_s']:.2f} missions a second")
     console.print(f"faults      {faults or 'none'}")
     console.print(f"repeated    {repeated['twice']} twice, {repeated['processes']} as processes")
-    console.print(f"never       {', '.join(told['never']) or 'nothing: all has happened that should'}")
+    if hunt.draws:
+        never = ", ".join(told["never"]) or "nothing: all has happened that should"
+        console.print(f"never       {never}")
     for one in hunt.found:
         console.print(
             f"BROKEN      {one.failure.property} in {one.name}: {one.failure.what}", markup=False
