@@ -16,6 +16,9 @@ RobotId = Annotated[int, Range(1, 2**31 - 1)]
 Seconds = Annotated[float, Range(0.0, 1e6)]
 """A time of the mission [s]: up to eleven days."""
 
+MOST_PATH_POINTS = 1000
+"""Points of a path that a leader is given: 10 km at one every 10 m."""
+
 MOST_ROBOTS = 300
 """Robots of a team: a leader names all of them in one frame of 2304 bytes, whatever their ids are."""
 
@@ -180,17 +183,27 @@ class TeamSection:
 class PlannerSection:
     """Way-finding of the leader (thesis 3.4). inflation: clearance kept from obstacles [m].
 
-    samples: points a road map. classify_range: obstacles nearer than this turn the fan [m].
-    memory: way points that `escape` can remember. patience: distance that it may search without coming
-    closer to the goal, in laser ranges.
+    kind: "escape" (ours), "modified", "original" (thesis 3.4, 4.1), or "path": along `path`, points from
+    the start to the goal [m] (thesis 4.2). samples: points a road map. classify_range: obstacles nearer
+    than this turn the fan [m]. memory: way points that `escape` can remember. patience: distance that it
+    may search without coming closer to the goal, in laser ranges.
     """
 
-    kind: Literal["escape", "modified", "original"] = "escape"
+    kind: Literal["escape", "modified", "original", "path"] = "escape"
+    path: tuple[Point, ...] = ()
     samples: Annotated[int, Range(1, 5000)] = 200
     inflation: Annotated[float, Range(0.01, 100.0)] = 0.5
     classify_range: Annotated[float, Range(0.01, 1e3)] = 3.0
     memory: Annotated[int, Range(1, 100_000)] = 1024
     patience: Annotated[float, Range(0.1, 1e6)] = 50.0
+
+    def problems(self) -> Iterator[Problem]:
+        if self.kind == "path" and len(self.path) < 2:
+            yield Problem(
+                "path", f"{len(self.path)} points to drive along", "at least two, [[x, y], [x, y]]"
+            )
+        if len(self.path) > MOST_PATH_POINTS:
+            yield Problem("path", f"{len(self.path)} points", f"at most {MOST_PATH_POINTS}")
 
 
 def beside_goal(goal: GoalSection, body: RobotSection, planner: PlannerSection) -> float:
