@@ -52,6 +52,16 @@ def test_after_a_moment_it_is_forgotten() -> None:
     assert not view.free(TURNED, 1.0, 0.0)
 
 
+def test_what_was_beside_the_way_may_have_come_nearer_since() -> None:
+    """A robot seen 0.8 m beside the way back; the others move as fast as the leader, 1 m/s."""
+    scan = block(27, 28, 1.7)
+    view = seen(scan, Pose(-0.6, 0.0, 0.0))
+    assert view.free(TURNED, 1.0, 0.0)
+    for _ in range(round(0.6 / PERIOD)):
+        view.see(TURNED, OPEN)
+    assert not view.free(TURNED, 1.0, 0.0)
+
+
 def test_a_slot_far_behind_is_turned_to() -> None:
     view = seen(np.full(181, 10.0, np.float32), Pose(-0.6, 0.0, 0.0))
     assert view.free(TURNED, FARTHEST - 0.1, 0.0)
