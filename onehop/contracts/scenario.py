@@ -8,7 +8,7 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, Literal
 
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.problems import Problem
@@ -36,13 +36,18 @@ PATH_END = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """One mission. Sections as above; seed fixes everything random in the run."""
+    """One mission. Sections as above; seed fixes everything random in the run.
+
+    profile: "team", the defaults of the sections, or "thesis", which fills in the thesis's own where a
+    file leaves them out (onehop/scenario/profile.py). Nothing but reading a file looks at it.
+    """
 
     name: str
     goal: GoalSection
     map: MapSection
     start: StartSection = field(default_factory=StartSection)
     seed: Annotated[int, Range(0, 2**63 - 1)] = 1
+    profile: Literal["team", "thesis"] = "team"
     team: TeamSection = field(default_factory=TeamSection)
     robot: RobotSection = field(default_factory=RobotSection)
     gains: GainsSection = field(default_factory=GainsSection)
