@@ -63,7 +63,9 @@ class PathPlanner:
         self.beams = Beams(briefing.body)
         self.inflation, self.samples = section.inflation, section.samples
         self.clearance = STEP_KEEPS * self.inflation
-        self.tracker = PathTracker(briefing.body, self.beams, briefing.period_ns, self.clearance, pose)
+        self.tracker = PathTracker(
+            briefing.body, self.beams, briefing.period_ns, self.clearance, pose, turns_back=True
+        )
         self.path, self.rest = _densified(np.array(section.path), SPACING * self.inflation)
         self.search: ThesisPlanner | None = None
         self.joined = False

@@ -52,19 +52,27 @@ CAUTION_STEPS = 2.0
 class PathTracker:
     """Does what it was told last: follows a way, or turns in place to a heading.
 
-    period_ns: of a tick. clearance: to keep from obstacles [m]. way: (n, 2) followed now [m], map frame;
+    period_ns: of a tick. clearance: to keep from obstacles [m]. turns_back: ways may turn back sharply;
+    those that a planner draws anew every few metres do not. way: (n, 2) followed now [m], map frame;
     empty while it turns. heading: turned to now [rad], or None. waypoint: end of the last way [m].
     blocked_ns: for how long it faced its aim and could not go on.
     """
 
     def __init__(
-        self, body: RobotSection, beams: Beams, period_ns: int, clearance: float, pose: Pose
+        self,
+        body: RobotSection,
+        beams: Beams,
+        period_ns: int,
+        clearance: float,
+        pose: Pose,
+        turns_back: bool = False,
     ) -> None:
         self.body = body
         self.beams = beams
         self.period_ns = period_ns
         self.period = period_ns * 1e-9
         self.clearance = clearance
+        self._turns_back = turns_back
         self.lookahead = max(LOOKAHEAD_S * body.leader_speed, body.leader_speed / body.max_turn_rate)
         self.way: FloatArray = NO_POINTS
         self.heading: float | None = None
@@ -207,6 +215,8 @@ class PathTracker:
         next leg begins.
         """
         aim = self._beyond_foot(pose, lookahead)
+        if not self._turns_back:
+            return aim
         while aim != self._points[-1] and math.dist(aim, (pose.x, pose.y)) < TURNED_BACK * lookahead:
             self._leg += 1
             aim = self._beyond_foot(pose, lookahead)
