@@ -44,6 +44,7 @@ class Planner(StrEnum):
     ESCAPE = "escape"
     MODIFIED = "modified"
     ORIGINAL = "original"
+    PATH = "path"
 
 
 Settings = Annotated[
@@ -229,6 +230,9 @@ def plan(
     figure: Annotated[
         Path | None, Option(help="Draw map, samples, road maps and path (.png, .svg or .pdf).")
     ] = None,
+    path: Annotated[
+        Path | None, Option(help="Write the way as planner.path of a scenario (.toml).")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """One leader alone finds its way in a map that it does not know.
@@ -238,7 +242,7 @@ def plan(
     from onehop.commands import plan as command
 
     kind = None if planner is None else planner.value
-    leave(command.plan(map_file, start, goal, kind, seed, cell, settings, figure, as_json))
+    leave(command.plan(map_file, start, goal, kind, seed, cell, settings, figure, path, as_json))
 
 
 @app.command()

@@ -1,12 +1,16 @@
 """`onehop plan`: one leader alone finds its way through a map that it does not know."""
 
+import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from onehop.analysis.driven_path import in_toml, saved_path
 from onehop.analysis.shortest import KnownMap, way_length
 from onehop.commands.output import emit_json
 from onehop.contracts.arrays import FloatArray
 from onehop.contracts.errors import InputError
+from onehop.contracts.scenario import Scenario
 from onehop.drivers.trial import Trial, run_trial
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
@@ -29,11 +33,14 @@ def plan(
     cell: float | None,
     settings: list[str],
     figure: Path | None,
+    path: Path | None,
     as_json: bool,
 ) -> int:
     """Find the way once; exit status 1 when the goal was not reached."""
     if figure is not None:
         _require_picture(figure)
+    if path is not None:
+        require_writable(path)
     bundle = scenario_file.load_map_mission(
         map_file,
         scenario_file.point(start, "--start"),
@@ -57,6 +64,8 @@ def plan(
 
         with explained(figure, "a folder with room for it"):
             figure.write_bytes(plan_figure(run, walls, target, shortest, figure.suffix.lower()[1:]))
+    if path is not None and summary["reached"]:
+        _save_path(path, run, scenario, walls)
     if as_json:
         emit_json(summary)
     else:
@@ -79,6 +88,16 @@ def _require_picture(figure: Path) -> None:
     if figure.suffix.lower() not in PICTURES:
         raise InputError(f"--figure {figure}", "its ending says no format", " or ".join(PICTURES))
     require_writable(figure)
+
+
+def _save_path(path: Path, run: Trial, scenario: Scenario, walls: WallMap) -> None:
+    """Write what was driven as a section of a scenario."""
+    goal = (scenario.goal.x, scenario.goal.y)
+    corners = saved_path(run.path[:, :2], goal, walls, scenario.planner.inflation)
+    legs = sum(math.dist(here, there) for here, there in pairwise(corners))
+    remark = f"Driven by planner {scenario.planner.kind}, seed {scenario.seed}, its loops left out: "
+    with explained(path, "a folder with room for it"):
+        path.write_text(in_toml(corners, f"{remark}{legs:.0f} m."))
 
 
 def _shortest(

@@ -68,8 +68,16 @@ def ideal_throughput_bps(
     )
 
 
+LIGHT_M_PER_US = 299.792458
+"""Speed of light [m/us]."""
+
 THESIS_THRESHOLD_BPS = 0.5333e6
 """Throughput below which the thesis's followers hurry, at 1 Mb/s and 800 B (3.8.3) [bit/s]."""
+
+
+def propagation_us(distance: float) -> float:
+    """How long a signal takes over a distance in metres [us] (thesis eq. 3.22)."""
+    return distance / LIGHT_M_PER_US
 
 
 def threshold_bps(rate_mbps: float, msdu_bytes: int, propagation_us: float = 0.0) -> float:

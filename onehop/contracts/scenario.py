@@ -4,10 +4,11 @@ Reading files is onehop/scenario's work; here are the values, their defaults wit
 the conditions that they must fulfil (`problems`).
 """
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated
+from typing import Annotated, Literal
 
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.problems import Problem
@@ -28,16 +29,25 @@ NAME = re.compile(r"\w[^/\\]*")
 NAME_BYTES = 200
 """What a scenario may be called: its log's folder bears the name, and the time of its run."""
 
+PATH_END = 0.5
+"""Distance of a given path's end from the goal, at most, in the goal's tolerances: a leader arrives at
+0.6 of them."""
+
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """One mission. Sections as above; seed fixes everything random in the run."""
+    """One mission. Sections as above; seed fixes everything random in the run.
+
+    profile: "team", the defaults of the sections, or "thesis", which fills in the thesis's own where a
+    file leaves them out (onehop/scenario/profile.py). Nothing but reading a file looks at it.
+    """
 
     name: str
     goal: GoalSection
     map: MapSection
     start: StartSection = field(default_factory=StartSection)
     seed: Annotated[int, Range(0, 2**63 - 1)] = 1
+    profile: Literal["team", "thesis"] = "team"
     team: TeamSection = field(default_factory=TeamSection)
     robot: RobotSection = field(default_factory=RobotSection)
     gains: GainsSection = field(default_factory=GainsSection)
@@ -55,7 +65,7 @@ class Scenario:
                 f"a letter or digit, then what can be printed but / and \\, at most {NAME_BYTES} bytes",
             )
         yield from out_of_range(self)
-        for section in ("map", "team", "gains", "radio"):
+        for section in ("map", "team", "gains", "planner", "radio"):
             for problem in getattr(self, section).problems():
                 yield problem._replace(key=f"{section}.{problem.key}")
         robots = self.team.robots
@@ -71,6 +81,8 @@ class Scenario:
                 f"{self.planner.inflation} m is less than robot.radius {self.robot.radius} m",
                 "at least the radius",
             )
+        if self.planner.kind == "path":
+            yield from self._path_problems()
         for number, fault in enumerate(self.faults):
             for problem in fault.problems():
                 yield problem._replace(key=f"faults[{number}].{problem.key}")
@@ -81,6 +93,25 @@ class Scenario:
                     f"robot {strangers[0]} is not in the team",
                     f"ids of the team: {', '.join(map(str, robots))}",
                 )
+
+    def _path_problems(self) -> Iterator[Problem]:
+        """A leader has to see the path from where it starts, and has arrived at its end."""
+        path, start, goal = self.planner.path, self.start, self.goal
+        starts = start.poses or ((start.x, start.y, 0.0),)
+        away = min(math.dist(path[0], place[:2]) for place in starts)
+        if away > self.robot.laser_range:
+            yield Problem(
+                "planner.path",
+                f"its first point is {away:.1f} m from the start",
+                f"at most robot.laser_range, {self.robot.laser_range} m",
+            )
+        away, least = math.dist(path[-1], (goal.x, goal.y)), PATH_END * goal.tolerance
+        if away > least:
+            yield Problem(
+                "planner.path",
+                f"its last point is {away:.2f} m from the goal",
+                f"at most {PATH_END} of goal.tolerance, {least:g} m",
+            )
 
 
 def _is_name(text: str) -> bool:

@@ -16,6 +16,9 @@ RobotId = Annotated[int, Range(1, 2**31 - 1)]
 Seconds = Annotated[float, Range(0.0, 1e6)]
 """A time of the mission [s]: up to eleven days."""
 
+MOST_PATH_POINTS = 1000
+"""Points of a path that a leader is given: 10 km at one every 10 m."""
+
 MOST_ROBOTS = 300
 """Robots of a team: a leader names all of them in one frame of 2304 bytes, whatever their ids are."""
 
@@ -101,9 +104,10 @@ class GainsSection:
 
     policy: "throughput" (thesis: k_rho_max below the threshold), "constant" (always k_rho_min), or
     "smooth" (ours: rises in proportion to the deficit of a filtered throughput, and to its fall).
-    threshold: "thesis" (0.5333e6 bit/s for all) or "ideal" (the same share of the ideal throughput at
-    this rate and size of Next). reverse: drive backwards to a slot that lies behind (thesis eq. 3.10);
-    that is blind, so the default is to turn on the spot first.
+    threshold: "thesis" (0.5333e6 bit/s for all), "ideal" (the same share of the ideal throughput at
+    this rate and size of Next) or "slot" (of the ideal throughput over the distance of the robot's slot
+    from the leader, thesis 3.8.3). reverse: drive backwards to a slot that lies behind (thesis eq.
+    3.10), where the robot saw a moment ago that the way is free; the default is to turn to it first.
     """
 
     k_alpha: Annotated[float, Range(1e-3, 1e3)] = 8.0
@@ -111,7 +115,7 @@ class GainsSection:
     k_rho_min: Annotated[float, Range(1e-3, 1e3)] = 1.0
     k_rho_max: Annotated[float, Range(1e-3, 1e3)] = 3.0
     policy: Literal["throughput", "constant", "smooth"] = "throughput"
-    threshold: Literal["thesis", "ideal"] = "thesis"
+    threshold: Literal["thesis", "ideal", "slot"] = "thesis"
     reverse: bool = False
 
     def problems(self) -> Iterator[Problem]:
@@ -133,8 +137,9 @@ class TeamSection:
 
     ids: robots, or empty for 1..size. spacing: s of the slot table [m]. next_period: T [s].
     lost_after: missing acknowledgements in a row until a follower is given up.
-    leader_timeout: silence until a follower gives up its leader [s]. setup_timeout [s].
-    next_msdu_bytes: size of Next on the air (thesis 3.7).
+    leader_timeout: silence until a follower gives up its leader [s]. target_timeout: the same for one
+    that stands in its slot, since it is there (thesis 4.3: T) [s]; 0: leader_timeout alone.
+    setup_timeout [s]. next_msdu_bytes: size of Next on the air (thesis 3.7).
 
     profile: "thesis" (its rules alone) or "team" (epochs, yielding, joining; docs/modes.md).
     orphan: what a robot of profile "thesis" does that hears nobody any more: "stop", or go "solo"
@@ -150,6 +155,7 @@ class TeamSection:
     next_period: Annotated[float, Range(0.01, 3600.0)] = 2.0
     lost_after: Annotated[int, Range(1, 1000)] = 2
     leader_timeout: Annotated[float, Range(0.01, 1e5)] = 5.0
+    target_timeout: Annotated[float, Range(0.0, 1e5)] = 0.0
     setup_timeout: Annotated[float, Range(0.01, 1e5)] = 40.0
     next_msdu_bytes: Annotated[int, Range(1, 2304)] = 800
     profile: Literal["team", "thesis"] = "team"
@@ -169,6 +175,12 @@ class TeamSection:
                 f"{self.leader_timeout} s is less than next_period",
                 f"at least {self.next_period} s",
             )
+        if 0.0 < self.target_timeout < self.next_period:
+            yield Problem(
+                "target_timeout",
+                f"{self.target_timeout} s is less than next_period",
+                f"at least {self.next_period} s, or 0 for leader_timeout alone",
+            )
         duplicates = sorted({i for i in self.ids if self.ids.count(i) > 1})
         if duplicates:
             yield Problem("ids", f"robot {duplicates[0]} stands twice", "every id once")
@@ -180,17 +192,29 @@ class TeamSection:
 class PlannerSection:
     """Way-finding of the leader (thesis 3.4). inflation: clearance kept from obstacles [m].
 
-    samples: points a road map. classify_range: obstacles nearer than this turn the fan [m].
-    memory: way points that `escape` can remember. patience: distance that it may search without coming
-    closer to the goal, in laser ranges.
+    kind: "escape" (ours), "modified", "original" (thesis 3.4, 4.1), or "path": along `path`, points from
+    the start to the goal [m] (thesis 4.2). samples: points a road map. classify_range: obstacles nearer
+    than this turn the fan [m]. classify: whether `modified` looks for them at its virtual goals alone,
+    or while it drives as well (Algorithm 2, 4 a 1). memory: way points that `escape` can remember.
+    patience: distance that it may search without coming closer to the goal, in laser ranges.
     """
 
-    kind: Literal["escape", "modified", "original"] = "escape"
+    kind: Literal["escape", "modified", "original", "path"] = "escape"
+    path: tuple[Point, ...] = ()
     samples: Annotated[int, Range(1, 5000)] = 200
     inflation: Annotated[float, Range(0.01, 100.0)] = 0.5
     classify_range: Annotated[float, Range(0.01, 1e3)] = 3.0
+    classify: Literal["virtual goals", "driving"] = "virtual goals"
     memory: Annotated[int, Range(1, 100_000)] = 1024
     patience: Annotated[float, Range(0.1, 1e6)] = 50.0
+
+    def problems(self) -> Iterator[Problem]:
+        if self.kind == "path" and len(self.path) < 2:
+            yield Problem(
+                "path", f"{len(self.path)} points to drive along", "at least two, [[x, y], [x, y]]"
+            )
+        if len(self.path) > MOST_PATH_POINTS:
+            yield Problem("path", f"{len(self.path)} points", f"at most {MOST_PATH_POINTS}")
 
 
 def beside_goal(goal: GoalSection, body: RobotSection, planner: PlannerSection) -> float:

@@ -36,4 +36,9 @@ def changed(scenario: Scenario, settings: Iterable[str]) -> Scenario:
     table = json.loads(json.dumps(asdict(scenario)))
     for setting in settings:
         apply_change(table, setting)
-    return structure(table, "--set")
+    altered = structure(table, "--set")
+    if altered.profile != scenario.profile:
+        raise ScenarioError(
+            "--set profile", "a log has every key of its profile written out", "set the keys themselves"
+        )
+    return altered

@@ -9,6 +9,7 @@ from cattrs import AttributeValidationNote, IterableValidationNote
 
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.scenario import Scenario
+from onehop.scenario.profile import with_profile
 
 
 class _MismatchError(ValueError):
@@ -57,7 +58,7 @@ _CONVERTER = _make_converter()
 def structure(table: dict[str, Any], origin: str) -> Scenario:
     """The scenario of a table. origin: what to call the table. Raises ScenarioError, naming the key."""
     try:
-        scenario = _CONVERTER.structure(table, Scenario)
+        scenario = _CONVERTER.structure(with_profile(table), Scenario)
     except cattrs.BaseValidationError as error:
         raise _first_mistake(error, origin, table) from None
     problem = next(scenario.problems(), None)

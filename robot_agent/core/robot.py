@@ -8,7 +8,7 @@ import math
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.briefings import Briefing
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.ideal_link import THESIS_THRESHOLD_BPS, threshold_bps
+from onehop.contracts.ideal_link import THESIS_THRESHOLD_BPS, propagation_us, threshold_bps
 from onehop.contracts.messages import Action, Note, Percept
 from onehop.contracts.randomness import generator
 from onehop.contracts.team import Mode, Status
@@ -28,11 +28,13 @@ from robot_agent.core.team.team_messages import MissionPhase
 FOLLOWER_MODES = (Mode.FOLLOWING, Mode.NARROW, Mode.BORDER)
 
 
-def required_throughput_bps(briefing: Briefing) -> float:
-    """Below this throughput a follower hurries [bit/s]."""
-    if briefing.gains.threshold == "thesis":
+def required_throughput_bps(briefing: Briefing, distance: float = 0.0) -> float:
+    """Below this throughput a follower hurries [bit/s]. distance: of its slot from the leader [m]."""
+    threshold = briefing.gains.threshold
+    if threshold == "thesis":
         return THESIS_THRESHOLD_BPS
-    return threshold_bps(briefing.radio.rate_mbps, briefing.team.next_msdu_bytes)
+    delay_us = propagation_us(distance) if threshold == "slot" else 0.0
+    return threshold_bps(briefing.radio.rate_mbps, briefing.team.next_msdu_bytes, delay_us)
 
 
 class Robot:
@@ -115,11 +117,11 @@ class Robot:
             self._reset_gain()
         else:
             self._throughput = event.throughput_bps if isinstance(event, NextMeasured) else 0.0
-            self._k_rho = self._policy.heard(self._throughput)
+            self._k_rho = self._policy.heard(self._throughput, self._threshold)
 
     def _reset_gain(self) -> None:
         """A follower that has not heard a Next yet is in no hurry."""
-        self._policy = make_policy(self._briefing.gains, self._threshold)
+        self._policy = make_policy(self._briefing.gains)
         self._k_rho = self._briefing.gains.k_rho_min
         self._throughput = 0.0
 
@@ -171,6 +173,7 @@ class Robot:
             self._target = (pose.x, pose.y)
             return self._motion.follow(pose, scan, nearest, None)
         target = self._slots.slot(state, view, leader)
+        self._threshold = required_throughput_bps(self._briefing, self._slots.distance(state))
         goal = self._briefing.goal
         self._target = (target.x, target.y)
         self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)

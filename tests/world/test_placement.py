@@ -177,3 +177,16 @@ def test_a_room_too_small_for_the_team_is_refused() -> None:
     cramped = replace(PLAN, start=StartSection(1.2, 1.2), goal=GoalSection(1.2, 1.2))
     with pytest.raises(ScenarioError, match="no room for 6 robots"):
         start_poses(cramped, closet)
+
+
+def test_a_given_path_is_refused_where_it_comes_too_close_to_a_wall() -> None:
+    def start(*path: tuple[float, float]) -> None:
+        start_poses(replace(PLAN, planner=PlannerSection(kind="path", path=path)), WALLS)
+
+    start((10.0, 10.0), (10.0, 38.0), (30.0, 38.0), (35.0, 35.0))
+    with pytest.raises(ScenarioError) as refusal:
+        start((10.0, 10.0), (10.0, 30.0), (35.0, 35.0))
+    assert refusal.value.where == "planner.path[2]"
+    assert "from [10.0, 30.0] to [35.0, 35.0] is not 0.5 m clear" in refusal.value.problem
+    with pytest.raises(ScenarioError, match=r"planner\.path\[1\]"):
+        start((10.0, 10.0), (19.6, 10.0), (10.0, 38.0))

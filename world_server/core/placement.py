@@ -1,9 +1,12 @@
 """Where the team starts: the scenario's own poses, or random ones by seed; and what may not be.
 
-Start and goal must be clear of obstacles by the planner's inflation, or no robot could plan there.
+Start, goal and a path that is given must be clear of obstacles by the planner's inflation, or no robot
+could plan or drive there.
 """
 
 import math
+from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 
@@ -12,6 +15,7 @@ from onehop.contracts.arrays import FloatArray
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import Point
 from onehop.maps.walls import WallMap
 
 _GAP = 0.2
@@ -30,10 +34,13 @@ _GROWTH, _GROWN = 1.15, 8
 def start_poses(scenario: Scenario, walls: WallMap) -> FloatArray:
     """Start poses in order of robot id, (n, 3) [m, m, rad].
 
-    Raises ScenarioError when start, goal or a pose is not free, or when there is no room for the team.
+    Raises ScenarioError when start, goal, a pose or the given path is not free, or when there is no room
+    for the team.
     """
     inflation = scenario.planner.inflation
     require_free(walls, "goal.x, goal.y", scenario.goal.x, scenario.goal.y, inflation)
+    if scenario.planner.kind == "path":
+        require_clear_path(walls, scenario.planner.path, inflation)
     if scenario.start.poses:
         return _given_poses(scenario, walls)
     start = scenario.start
@@ -120,3 +127,14 @@ def require_free(walls: WallMap, where: str, x: float, y: float, inflation: floa
         remedy += f"change how the map is read ({walls.reading}), or " if walls.reading else ""
         remedy += "make planner.inflation smaller"
     raise ScenarioError(where, problem, remedy)
+
+
+def require_clear_path(walls: WallMap, path: Sequence[Point], inflation: float) -> None:
+    """Raise ScenarioError for a path on which the planner's inflation is not kept."""
+    for number, (here, there) in enumerate(pairwise(path)):
+        if not walls.sees(*here, *there, inflation):
+            raise ScenarioError(
+                f"planner.path[{number + 1}]",
+                f"the way from {list(here)} to {list(there)} is not {inflation} m clear of obstacles",
+                "a path around them, or a smaller planner.inflation",
+            )

@@ -1,7 +1,8 @@
 """How a follower drives: tracking its slot in the open, or around what is in the way (detour.py).
 
 Differs: a slot behind the robot is turned to on the spot first, not driven to backwards (thesis eq. 3.9,
-3.10), because the laser does not look back; gains.reverse = true gives the thesis's way.
+3.10), because the laser does not look back. With gains.reverse = true it is driven to backwards where
+the robot saw a moment ago that the way is free (rear_view.py).
 """
 
 import math
@@ -14,6 +15,7 @@ from onehop.contracts.sections import GainsSection, RobotSection
 from robot_agent.core.motion.detour import Detour, SlotTask
 from robot_agent.core.motion.free_directions import LOOKAHEAD
 from robot_agent.core.motion.lane import draw_aside
+from robot_agent.core.motion.rear_view import RearView
 from robot_agent.core.motion.steering import TURN_IN_PLACE, Steering, stoppable
 from robot_agent.core.motion.tracking import PolarError, polar_error, polar_twist, within_limits
 
@@ -42,6 +44,7 @@ class FollowerMotion:
         self._body = body
         self._gains = gains
         self._steering = Steering(body, gains, beams)
+        self._rear = RearView(body, beams, period)
         self.detour = Detour(body, self._steering, period, draws)
 
     def reset(self) -> None:
@@ -55,6 +58,8 @@ class FollowerMotion:
 
     def to_slot(self, pose: Pose, scan: Ranges, nearest: float, task: SlotTask) -> Twist:
         """Twist for this tick towards the slot. nearest: least range in scan [m]."""
+        if self._gains.reverse:
+            self._rear.see(pose, scan)
         error = polar_error(pose, task.slot)
         distance = error.rho
         bearing = wrap_angle(error.alpha + math.pi) if error.reverse else error.alpha
@@ -65,20 +70,23 @@ class FollowerMotion:
         detour = self.detour
         detour.watch_trail(pose, scan, task.trail)
         if not detour.border and nearest > min(LOOKAHEAD, distance + BEYOND_SLOT):
-            return self._track(error, bearing, task.k_rho, LOOKAHEAD)
+            return self._track(pose, error, bearing, task, LOOKAHEAD)
         held = detour.held(pose)
         if held is not None:
             return held
         free = detour.free_way(scan, distance, bearing)
         if free is not None:
-            return self._track(error, bearing, task.k_rho, free)
+            return self._track(pose, error, bearing, task, free)
         return detour.step(pose, distance, bearing, task)
 
-    def _track(self, error: PolarError, bearing: float, k_rho: float, free: float) -> Twist:
+    def _track(
+        self, pose: Pose, error: PolarError, bearing: float, task: SlotTask, free: float
+    ) -> Twist:
         """The way to the slot is clear for `free` metres: thesis eq. 3.11, 3.12."""
         self.detour.tracks()
-        body, gains = self._body, self._gains
-        if error.reverse and gains.reverse:
+        body, gains, k_rho = self._body, self._gains, task.k_rho
+        backs_up = error.reverse and gains.reverse
+        if backs_up and self._rear.free(pose, task.slot.x, task.slot.y):
             return within_limits(polar_twist(error, gains, k_rho, body.max_speed), body)
         if abs(bearing) > TURN_IN_PLACE:
             return self._steering.turn(bearing)

@@ -1,6 +1,7 @@
 """How k_rho follows the throughput of the link to the leader (thesis 3.5). Replaceable policies.
 
-A policy hears one throughput for each Next that came, and 0 for each that did not.
+A policy hears one throughput for each Next that came, and 0 for each that did not, and the threshold of
+the slot that the robot has by then.
 """
 
 from typing import Protocol
@@ -18,9 +19,9 @@ BAND = 1.5
 
 
 class GainPolicy(Protocol):
-    """Chooses k_rho [1/s] from measured throughputs [bit/s]."""
+    """Chooses k_rho [1/s] from measured throughputs and a threshold [bit/s]."""
 
-    def heard(self, throughput_bps: float) -> float:
+    def heard(self, throughput_bps: float, threshold_bps: float) -> float:
         """k_rho after one more Next, or after one that is missing (0 bit/s)."""
         ...
 
@@ -31,19 +32,18 @@ class ConstantGain:
     def __init__(self, gains: GainsSection) -> None:
         self._k_rho = gains.k_rho_min
 
-    def heard(self, throughput_bps: float) -> float:  # noqa: ARG002 (the interface's argument)
+    def heard(self, throughput_bps: float, threshold_bps: float) -> float:  # noqa: ARG002 (the interface)
         return self._k_rho
 
 
 class ThroughputGain:
     """k_rho_max while the last throughput is below the threshold, else k_rho_min (thesis 3.5)."""
 
-    def __init__(self, gains: GainsSection, threshold_bps: float) -> None:
+    def __init__(self, gains: GainsSection) -> None:
         self._gains = gains
-        self._threshold = threshold_bps
 
-    def heard(self, throughput_bps: float) -> float:
-        low = throughput_bps < self._threshold
+    def heard(self, throughput_bps: float, threshold_bps: float) -> float:
+        low = throughput_bps < threshold_bps
         return self._gains.k_rho_max if low else self._gains.k_rho_min
 
 
@@ -55,24 +55,23 @@ class SmoothGain:
     filter, and a steady fall is seen before the threshold.
     """
 
-    def __init__(self, gains: GainsSection, threshold_bps: float) -> None:
+    def __init__(self, gains: GainsSection) -> None:
         self._gains = gains
-        self._threshold = threshold_bps
         self._filtered = -1.0
 
-    def heard(self, throughput_bps: float) -> float:
+    def heard(self, throughput_bps: float, threshold_bps: float) -> float:
         before = self._filtered if self._filtered >= 0 else throughput_bps
         self._filtered = before + FILTER_SHARE * (throughput_bps - before)
         expected = self._filtered + LOOKAHEAD * min(0.0, self._filtered - before)
-        calm = BAND * self._threshold
-        urgency = min(1.0, max(0.0, (calm - expected) / (calm - self._threshold)))
+        calm = BAND * threshold_bps
+        urgency = min(1.0, max(0.0, (calm - expected) / (calm - threshold_bps)))
         return self._gains.k_rho_min + urgency * (self._gains.k_rho_max - self._gains.k_rho_min)
 
 
-def make_policy(gains: GainsSection, threshold_bps: float) -> GainPolicy:
+def make_policy(gains: GainsSection) -> GainPolicy:
     """The policy that a scenario names."""
     if gains.policy == "constant":
         return ConstantGain(gains)
     if gains.policy == "smooth":
-        return SmoothGain(gains, threshold_bps)
-    return ThroughputGain(gains, threshold_bps)
+        return SmoothGain(gains)
+    return ThroughputGain(gains)

@@ -45,6 +45,14 @@ class SlotFinder:
             self._slot_key, self._slot = key, self._placed(state, view, leader)
         return self._slot
 
+    def distance(self, state: TeamState) -> float:
+        """How far from the leader the slot of this robot lies [m]."""
+        shape = self.shape(state)
+        if isinstance(state.part, Joining) or shape.leader == state.robot:
+            return self._team.spacing
+        slot = shape.slot(state.robot)
+        return math.hypot(slot.x, slot.y)
+
     def _placed(self, state: TeamState, view: LeaderView, leader: Pose) -> Pose:
         """Who has no slot in the formation (it joins, or led until now) keeps a spacing behind."""
         shape = self.shape(state)

@@ -39,6 +39,9 @@ ALIGNED = 0.02
 NEAREST_AIM = 0.1
 """The curvature is that to an aim at least this far away [m]; nearer ones would make the robot swing."""
 
+TURNED_BACK = 0.5
+"""A way whose aim is this near to the robot, in lookaheads, has turned back by more than 120 degrees."""
+
 LEG_DONE = 0.02
 """Rest of a leg of the way at which the next one begins [m]."""
 
@@ -49,19 +52,27 @@ CAUTION_STEPS = 2.0
 class PathTracker:
     """Does what it was told last: follows a way, or turns in place to a heading.
 
-    period_ns: of a tick. clearance: to keep from obstacles [m]. way: (n, 2) followed now [m], map frame;
+    period_ns: of a tick. clearance: to keep from obstacles [m]. turns_back: ways may turn back sharply;
+    those that a planner draws anew every few metres do not. way: (n, 2) followed now [m], map frame;
     empty while it turns. heading: turned to now [rad], or None. waypoint: end of the last way [m].
     blocked_ns: for how long it faced its aim and could not go on.
     """
 
     def __init__(
-        self, body: RobotSection, beams: Beams, period_ns: int, clearance: float, pose: Pose
+        self,
+        body: RobotSection,
+        beams: Beams,
+        period_ns: int,
+        clearance: float,
+        pose: Pose,
+        turns_back: bool = False,
     ) -> None:
         self.body = body
         self.beams = beams
         self.period_ns = period_ns
         self.period = period_ns * 1e-9
         self.clearance = clearance
+        self._turns_back = turns_back
         self.lookahead = max(LOOKAHEAD_S * body.leader_speed, body.leader_speed / body.max_turn_rate)
         self.way: FloatArray = NO_POINTS
         self.heading: float | None = None
@@ -103,6 +114,10 @@ class PathTracker:
     def ended(self, pose: Pose, tolerance: float) -> bool:
         """Does it follow a way, and is it at its end within a tolerance [m]?"""
         return len(self.way) > 0 and math.dist((pose.x, pose.y), self.waypoint) < tolerance
+
+    def ahead(self, pose: Pose) -> FloatArray:
+        """The rest of the way that it follows, from where the robot is, (n, 2) [m]."""
+        return np.array(((pose.x, pose.y), *self._points[self._leg + 1 :]))
 
     def drive(self, pose: Pose, scan: Ranges) -> Twist:
         """The twist for this tick; standstill at the end of a way."""
@@ -194,7 +209,21 @@ class PathTracker:
         return min(self.clearance * self.clearance, have2 - 1e-9)
 
     def _aim(self, pose: Pose, lookahead: float) -> Point:
-        """The point of the way that lies `lookahead` beyond the robot's foot point on it."""
+        """The point of the way that lies `lookahead` beyond the robot's foot point on it.
+
+        Where the way turns back, that point may lie where the robot is: the turn is behind it, and the
+        next leg begins.
+        """
+        aim = self._beyond_foot(pose, lookahead)
+        if not self._turns_back:
+            return aim
+        while aim != self._points[-1] and math.dist(aim, (pose.x, pose.y)) < TURNED_BACK * lookahead:
+            self._leg += 1
+            aim = self._beyond_foot(pose, lookahead)
+        return aim
+
+    def _beyond_foot(self, pose: Pose, lookahead: float) -> Point:
+        """The point `lookahead` beyond the foot point; a leg that is done gives way to the next."""
         x, y = pose.x, pose.y
         while True:
             (ax, ay), (bx, by) = self._points[self._leg], self._points[self._leg + 1]

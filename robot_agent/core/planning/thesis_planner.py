@@ -1,13 +1,16 @@
 """The thesis's planners: virtual goal after virtual goal, and a step back when no point is left (3.4).
 
 `original` samples the full 180 degree fan towards the goal. `modified` is Algorithm 2: an obstacle
-within 3 m limits and turns the fan. Both know only the current scan and the list of virtual goals.
-Both can be caught; that is what they are here to show.
+within 3 m limits and turns the fan, where the robot plans, and with `planner.classify = "driving"` also
+where a corner or a wall in front comes up on its way. Both know only the current scan and the list of
+virtual goals. Both can be caught; that is what they are here to show.
 
 Differs: while an obstacle turns the fan, the virtual goal is the point furthest along the fan, as the
 text of 3.4.1 has it, not the nearest to the goal as in the listing, because the nearest one is beside
 the robot and it would never go along a wall. Differs: `original` does not choose a virtual goal twice,
 because otherwise its points are never used up (4.1) and the step back of the listing never happens.
+Differs: at its start `modified` has no step to go back; it turns on and looks again, where the listing
+says nothing, because a leader that is elected among its team sees nothing but robots for a while.
 """
 
 import math
@@ -82,7 +85,7 @@ class ThesisPlanner:
                 return tracker.drive(pose, scan)
             tracker.stop()
             self._plan(pose, scan)
-        elif self._there(pose):
+        elif self._there(pose) or self._meets_obstacle(pose, scan):
             self.turns = 0
             self._plan(pose, scan)
         if tracker.heading is not None or self.status is not PlannerStatus.DRIVING:
@@ -93,6 +96,22 @@ class ThesisPlanner:
         """At the virtual goal, or unable to come closer to it."""
         blocked = self.tracker.blocked_ns > GIVE_UP_S * 1e9
         return blocked or self.tracker.ended(pose, REACHED * self.inflation)
+
+    def _meets_obstacle(self, pose: Pose, scan: Ranges) -> bool:
+        """Whether a corner or a front has come up on the way (listing, 4 a 1); it ends the way there.
+
+        Differs: not before the robot is a classification range on, because it has just turned from one.
+        """
+        section, begun = self.section, self.tracker.way[:1]
+        if section.classify != "driving" or not self.limited or not len(begun):
+            return False
+        if math.dist((pose.x, pose.y), begun[0]) < section.classify_range:
+            return False
+        view = View(self.beams, pose, scan, GRAIN * self.inflation)
+        if classify(view, section.classify_range) not in TURNS:
+            return False
+        self.virtual_goals[-1] = (pose.x, pose.y)
+        return True
 
     def _to_goal(self, pose: Pose) -> float:
         return elementary.atan2(self.goal[1] - pose.y, self.goal[0] - pose.x)
@@ -156,6 +175,9 @@ class ThesisPlanner:
 
     def _step_back(self, pose: Pose, roadmap: RoadMap, samples: FloatArray) -> None:
         """Back to the virtual goal before (listing, 2a); at the start there is nowhere left to go."""
+        if self.limited and len(self.virtual_goals) == 1:
+            self.tracker.face(pose.heading + math.pi / 2)
+            return
         self.virtual_goals.pop()
         if not self.virtual_goals:
             self.status = PlannerStatus.NO_WAY

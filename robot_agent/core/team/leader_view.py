@@ -11,15 +11,25 @@ TRAIL_POINTS = 16
 class LeaderView:
     """The leader as one follower sees it. period_ns: of Next.
 
-    silent_since_ns: since when nothing was heard of it. pose: None before its first word. trail: its
-    way, oldest point first [m]. lane: ends of the piece of its way to be kept clear [m], or none.
+    silent_since_ns: since when nothing was heard of it. at_slot_since_ns: since when the follower stands
+    in the slot that it was told last; None while it does not. pose: None before its first word. trail:
+    its way, oldest point first [m]. lane: ends of the piece of its way to be kept clear [m], or none.
     """
 
-    __slots__ = ("_next_due_ns", "_period_ns", "lane", "pose", "silent_since_ns", "trail")
+    __slots__ = (
+        "_next_due_ns",
+        "_period_ns",
+        "at_slot_since_ns",
+        "lane",
+        "pose",
+        "silent_since_ns",
+        "trail",
+    )
 
     def __init__(self, now_ns: int, period_ns: int, pose: Pose | None = None) -> None:
         self._period_ns = period_ns
         self.silent_since_ns = now_ns
+        self.at_slot_since_ns: int | None = None
         self.pose = pose
         self.trail: Points = ()
         self.lane: Points = ()
@@ -39,6 +49,23 @@ class LeaderView:
     def is_overdue(self, now_ns: int) -> bool:
         """Whether the leader was silent for more than a period and its grace."""
         return now_ns - self.silent_since_ns > self._period_ns * 5 // 4
+
+    def stands(self, now_ns: int, in_slot: bool) -> None:
+        """Take where the follower is at this tick."""
+        if not in_slot:
+            self.at_slot_since_ns = None
+        elif self.at_slot_since_ns is None:
+            self.at_slot_since_ns = now_ns
+
+    def silent_at_slot_ns(self, now_ns: int) -> int:
+        """For how long it is silent and the follower in its slot, less a quarter of a period of grace.
+
+        A Next is due a whole period after the last, and then takes its time on the air.
+        """
+        if self.at_slot_since_ns is None:
+            return 0
+        since_ns = max(self.silent_since_ns, self.at_slot_since_ns)
+        return now_ns - since_ns - self._period_ns // 4
 
     def on_word(self, now_ns: int, pose: Pose) -> None:
         """The leader was heard, by a command or a beacon."""

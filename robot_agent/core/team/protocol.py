@@ -66,6 +66,7 @@ class TeamProtocol:
         self._known = frozenset(briefing.team.robots)
         self._period_ns = period_ns
         self._leader_patience_ns = nanoseconds(briefing.team.leader_timeout)
+        self._target_patience_ns = nanoseconds(briefing.team.target_timeout)
         self._election = Election(briefing.team, self.rules, self.state, self._outbox, now_ns)
 
     # what the rest of the robot takes, once a tick
@@ -137,6 +138,8 @@ class TeamProtocol:
             self._outbox.note("garbled", robots=tuple(sorted(self._garbled_from)))
             self._garbled_from.clear()
         part = self.state.part
+        if isinstance(part, Following):
+            part.leader.stands(now_ns, in_position)
         if isinstance(part, Following | Waiting) and part.leader.misses_next(now_ns):
             self.state.events.append(NextMissed())
 
@@ -270,16 +273,24 @@ class TeamProtocol:
         pose: what followers are to form up on; trail: the way that this robot came as leader [m].
         """
         part = self.state.part
-        if not isinstance(part, Leading):
-            patience_ns = self._leader_patience_ns
-            if isinstance(part, Waiting):
-                patience_ns = part.patience_ns
-            if now_ns - part.leader.silent_since_ns >= patience_ns:
-                self._election.on_silence(now_ns, pose)
-                part = self.state.part
+        if not isinstance(part, Leading) and self._gives_up(now_ns, part):
+            self._election.on_silence(now_ns, pose)
+            part = self.state.part
         if isinstance(part, Leading):
             self._speak_as_leader(now_ns, pose, trail, part)
         self._repeat_handover(now_ns)
+
+    def _gives_up(self, now_ns: int, part: Following | Waiting | Joining) -> bool:
+        """Whether the leader was silent for too long.
+
+        Differs: the thesis waits T after the target is reached (4.3); one that cannot reach it would
+        wait for ever, so leader_timeout ends every wait.
+        """
+        view, target_ns = part.leader, self._target_patience_ns
+        patience_ns = part.patience_ns if isinstance(part, Waiting) else self._leader_patience_ns
+        if target_ns and isinstance(part, Following) and view.silent_at_slot_ns(now_ns) >= target_ns:
+            return True
+        return now_ns - view.silent_since_ns >= patience_ns
 
     def _speak_as_leader(
         self, now_ns: int, pose: Pose, trail: Sequence[tuple[float, float]], part: Leading

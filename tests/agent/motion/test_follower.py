@@ -26,8 +26,19 @@ def test_a_slot_behind_is_turned_to_on_the_spot_unless_reversing_is_asked_for():
     twist = follower().to_slot(HERE, OPEN, math.inf, behind)
     assert twist.v == 0.0
     assert twist.w != 0.0
+
+
+def test_a_slot_behind_is_backed_up_to_over_ground_seen_free_a_moment_ago():
+    """Thesis eq. 3.10: v = -k_rho * rho."""
+    backing, behind = follower(gains=GainsSection(reverse=True)), task(Pose(-0.3, 0.0, 0.0))
+    assert backing.to_slot(HERE, OPEN, math.inf, behind).v == 0.0, "it never looked there"
     backing = follower(gains=GainsSection(reverse=True))
-    assert backing.to_slot(HERE, OPEN, math.inf, behind).v == pytest.approx(-3.0)
+    for x in (-1.2, -0.8, -0.4):
+        for _ in range(4):
+            backing.to_slot(Pose(x, 0.0, 0.0), OPEN, math.inf, task(Pose(4.0, 0.0, 0.0)))
+    assert backing.to_slot(HERE, OPEN, math.inf, behind).v == pytest.approx(-0.3)
+    wall = follower(gains=GainsSection(reverse=True))
+    assert wall.to_slot(HERE, block(-90, 90, 1.0), 1.0, behind).v == 0.0
 
 
 @pytest.mark.parametrize("period", [0.02, 0.05, 0.1])

@@ -14,8 +14,8 @@ THRESHOLD = 0.5333e6  # thesis 3.8.3
 
 def course(policy, throughputs):
     gains = GainsSection(policy=policy, k_rho_min=1.0, k_rho_max=3.0)
-    chooser = make_policy(gains, THRESHOLD)
-    return [chooser.heard(value) for value in throughputs]
+    chooser = make_policy(gains)
+    return [chooser.heard(value, THRESHOLD) for value in throughputs]
 
 
 def test_thesis_policy_is_two_valued():
@@ -53,7 +53,7 @@ def test_gain_stays_within_its_bounds(policy):
 def test_the_ideal_threshold_follows_rate_and_size_of_next():
     """Thesis 3.8.3: 0.5333 Mb/s; eq. 3.15 gives 0.7792 Mb/s at 1 Mb/s and 800 B."""
 
-    def threshold(threshold="ideal", rate_mbps=1.0, size=800):
+    def threshold(threshold="ideal", rate_mbps=1.0, size=800, distance=0.0):
         scenario = Scenario(
             name="links",
             goal=GoalSection(9.0, 0.0),
@@ -62,9 +62,12 @@ def test_the_ideal_threshold_follows_rate_and_size_of_next():
             gains=GainsSection(threshold=threshold),
             radio=RadioSection(rate_mbps=rate_mbps),
         )
-        return required_throughput_bps(robot_briefing(scenario, 1, 0))
+        return required_throughput_bps(robot_briefing(scenario, 1, 0), distance)
 
     assert threshold() == pytest.approx(THRESHOLD, rel=1e-3)
     assert threshold(rate_mbps=11.0) > 3.0 * THRESHOLD
     assert threshold(size=200) < 0.8 * THRESHOLD
     assert threshold("thesis", 11.0, 200) == THRESHOLD
+    near, far = (threshold("slot", distance=distance) for distance in (4.0, 8.0))
+    assert far < near < threshold()
+    assert far == pytest.approx(THRESHOLD, rel=1e-3), "slightly different from slot to slot (3.8.3)"

@@ -41,3 +41,17 @@ def test_who_awaits_another_leader_forgets_the_way_and_lane_of_the_old_one() -> 
     view.await_other(3 * SECOND)
     assert (view.trail, view.lane, view.pose) == ((), (), HERE)
     assert not view.is_overdue(5 * SECOND)
+
+
+def test_silence_at_the_slot_counts_from_the_last_word_or_the_arrival_less_the_grace() -> None:
+    view = LeaderView(0, 2 * SECOND)
+    view.on_word(4 * SECOND, HERE)
+    view.stands(5 * SECOND, False)
+    assert view.silent_at_slot_ns(20 * SECOND) == 0
+    view.stands(6 * SECOND, True)
+    view.stands(7 * SECOND, True)
+    assert view.silent_at_slot_ns(9 * SECOND) == 5 * SECOND // 2
+    view.on_word(8 * SECOND, HERE)
+    assert view.silent_at_slot_ns(9 * SECOND) == SECOND // 2
+    view.stands(9 * SECOND, False)
+    assert view.silent_at_slot_ns(20 * SECOND) == 0
