@@ -19,7 +19,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-from onehop.contracts.messages import Action
+from onehop.contracts.messages import Action, Carriage
 from onehop.contracts.randomness import generator
 from onehop.drivers import inline
 from onehop.scenario import scenario_file
@@ -63,7 +63,7 @@ class Witness:
         """Mean over followers and ticks, lost messages as 0 [bit/s]."""
         return round(self.sum_bps / self.measured) if self.measured else None
 
-    def watch(self, world: World, actions: dict[int, Action]) -> None:
+    def watch(self, world: World, actions: dict[int, Action], _: Carriage) -> None:
         """Called by the driver after every tick."""
         for action in actions.values():
             if action.status.throughput_bps >= 0.0:

@@ -21,7 +21,7 @@ import statistics
 from pathlib import Path
 from typing import Any
 
-from onehop.contracts.messages import Action
+from onehop.contracts.messages import Action, Carriage
 from onehop.contracts.team import Mode
 from onehop.drivers import inline
 from onehop.scenario import scenario_file
@@ -42,7 +42,7 @@ class Course:
         self.last: dict[int, float] = {}
         self.regained_s: float | None = None
 
-    def watch(self, world: World, actions: dict[int, Action]) -> None:
+    def watch(self, world: World, actions: dict[int, Action], _: Carriage) -> None:
         """Called by the driver after every tick."""
         now = world.time_ns / 1e9
         followers = [i for i, one in actions.items() if one.status.leader not in (i, 0)]

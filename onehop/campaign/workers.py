@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from itertools import islice
 from multiprocessing import Pipe, get_context
 from multiprocessing.connection import Connection
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, TypeAlias, TypeVar
 
 from onehop.contracts.errors import InputError
 
@@ -43,6 +43,18 @@ class Done(Generic[T, R]):
 
     item: T
     result: R | Crash
+
+
+Run: TypeAlias = Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Done[Any, Any]]]
+"""Does work on items by some workers."""
+
+
+def workers(jobs: int | None, dask: str | None) -> Run:
+    """Those of the scheduler at the address `dask`, or `jobs` processes here, by default one a core."""
+    if dask is not None:
+        return lambda work, items: on_dask(work, items, dask)
+    count = jobs or len(os.sched_getaffinity(0))
+    return lambda work, items: on_cores(work, items, count)
 
 
 def on_cores(work: Callable[[T], R], items: Iterable[T], jobs: int) -> Iterator[Done[T, R]]:

@@ -6,17 +6,17 @@ failure that was made small a folder with its scenario file and its log, and cha
 
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from onehop import __version__
-from onehop.campaign.lines import Lines, Row
-from onehop.campaign.workers import Crash, Done
+from onehop.campaign.lines import Lines, Listener, Row
+from onehop.campaign.process_mission import write_scenario
+from onehop.campaign.workers import Crash, Done, Run
 from onehop.chaos.order import MissionOrder, Repeat, ShrinkOrder, shrink_failure, try_mission
-from onehop.chaos.process_mission import write_scenario
 from onehop.chaos.properties import CRASH
 from onehop.chaos.shrink import MOST_RUNS, Shrunk
 from onehop.chaos.swarm import stream
@@ -29,9 +29,6 @@ MISSIONS, FAILURES, PAGE = "missions.jsonl", "failures", "chaos.html"
 
 SHRUNK_EACH = 3
 """Failures of one property that are shrunk: more would tell the same."""
-
-Run = Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Done[Any, Any]]]
-"""Does work on items by some workers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,14 +82,14 @@ class Found:
 class Hunt:
     """One campaign in its folder. rows: of the missions that were tried, in the order of the orders.
 
-    tell: takes each row as it comes, for the progress display.
+    listener: the progress display.
     """
 
-    def __init__(self, wanted: Wanted, folder: Path, run: Run, tell: Callable[[Row], None]) -> None:
+    def __init__(self, wanted: Wanted, folder: Path, run: Run, listener: Listener) -> None:
         self._wanted = wanted
         self._folder = folder
         self._run = run
-        self._tell = tell
+        self._listener = listener
         self.rows: list[Row] = []
         self.found: list[Found] = []
         self.wall_s = 0.0
@@ -114,13 +111,14 @@ class Hunt:
             self.rows = [row for row in lines.rows if row["name"] in orders]
             done = {row["name"] for row in self.rows}
             missing = [order for name, order in orders.items() if name not in done]
+            self._listener.begin(len(self.rows))
             try:
                 for one in self._run(try_mission, missing):
                     row = one.result if not isinstance(one.result, Crash) else _lost(one)
                     lines.add(row)
                     self.rows.append(row)
                     self.tried_now += 1
-                    self._tell(row)
+                    self._listener.show(row)
                     if until_found and row["failures"]:
                         break
             finally:

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from onehop.analysis.difference import compare
 from onehop.analysis.log import open_log
-from onehop.chaos.process_mission import run_as_processes
+from onehop.campaign.process_mission import run_as_processes
 from onehop.chaos.properties import CRASH, SAME_BYTES
 from onehop.chaos.shrink import Shrunk, shrink
 from onehop.chaos.swarm import draw_mission

@@ -1,32 +1,23 @@
 """`onehop chaos`: random missions, each judged from its log; failures are made small."""
 
-import os
-import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
-
-from rich.console import Console
-from rich.live import Live
-from rich.text import Text
+from typing import NamedTuple
 
 from onehop.campaign.lines import Row
-from onehop.campaign.workers import Done, on_cores, on_dask
+from onehop.campaign.process_mission import self_contained
+from onehop.campaign.workers import workers
 from onehop.chaos import account
 from onehop.chaos.hunt import PAGE, Hunt, Wanted
 from onehop.chaos.page import write_page
-from onehop.chaos.process_mission import self_contained
-from onehop.commands.output import emit_json, say, stdout, table
+from onehop.commands.output import emit_json, stdout, table
+from onehop.commands.progress import ProgressLine
 from onehop.contracts.errors import InputError
 from onehop.mission.stops import Stopped
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import explained, held
-
-PLAIN_S = 10.0
-"""Wall-clock time between two plain lines of progress [s]."""
 
 
 class HowMany(NamedTuple):
@@ -63,7 +54,7 @@ def chaos(
     )
     folder = out or Path("runs") / f"chaos-{time.strftime('%Y%m%d-%H%M%S')}"
     with held(folder), _Progress(len(taken) + runs) as progress:
-        hunt = Hunt(wanted, folder, _workers(how_many.jobs, dask), progress.show)
+        hunt = Hunt(wanted, folder, workers(how_many.jobs, dask), progress)
         try:
             hunt.try_missions(how_many.until_found)
             if how_many.shrink_runs and hunt.found:
@@ -85,66 +76,29 @@ def _corpus(folder: Path) -> dict[str, Bundle]:
     return {path.name: self_contained(scenario_file.load(path), str(path)) for path in paths}
 
 
-def _workers(
-    jobs: int | None, dask: str | None
-) -> Callable[[Callable[[Any], Any], Iterable[Any]], Iterator[Done[Any, Any]]]:
-    if dask is not None:
-        return lambda work, items: on_dask(work, items, dask)
-    count = jobs or len(os.sched_getaffinity(0))
-    return lambda work, items: on_cores(work, items, count)
-
-
-class _Progress:
-    """How many missions are done, how fast, and what was found: one line over itself on a terminal."""
+class _Progress(ProgressLine):
+    """How many missions are done, how fast, and what was found."""
 
     def __init__(self, total: int) -> None:
-        self._total = total
-        self._done = 0
+        super().__init__(total)
         self._found: Counter[str] = Counter()
         self._outcomes: Counter[str] = Counter()
-        self._started = time.monotonic()
-        self._next_plain = self._started + PLAIN_S
-        self._live: Live | None = None
-
-    def __enter__(self) -> "_Progress":
-        if sys.stderr.isatty():
-            self._live = Live(Text("starting …"), console=Console(stderr=True), transient=True)
-            self._live.start()
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        if self._live is not None:
-            self._live.stop()
 
     def show(self, row: Row) -> None:
         """One more mission is done."""
-        self._done += 1
         self._outcomes[row["outcome"]] += 1
         self._found.update(failure["property"] for failure in row["failures"])
-        now = time.monotonic()
-        if self._live is not None:
-            self._live.update(Text(self._line(now)))
-        elif now >= self._next_plain:
-            self._next_plain = now + PLAIN_S
-            say(self._line(now))
+        self.count()
 
     def say_shrinking(self, found: int) -> None:
         """The missions are done; failures are made small."""
-        text = f"making {found} failures small"
-        if self._live is not None:
-            self._live.update(Text(text))
-        else:
-            say(text)
+        self.put(f"making {found} failures small")
 
-    def _line(self, now: float) -> str:
-        rate = self._done / max(now - self._started, 1e-9)
+    def line(self) -> str:
         kinds = [f"{count} {name}" for name, count in sorted(self._found.items())]
         ends = [f"{count} {name}" for name, count in sorted(self._outcomes.items())]
         found = ", ".join(kinds) or "nothing broken"
-        return (
-            f"{self._done} missions tried, {rate:.2f} a second, of {self._total} wanted: "
-            f"{', '.join(ends)}; {found}"
-        )
+        return f"{self.pace()}: {', '.join(ends)}; {found}"
 
 
 def _tell(hunt: Hunt, folder: Path, as_json: bool) -> None:

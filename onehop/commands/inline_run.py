@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from onehop.contracts.fault_section import fault_in_words
-from onehop.contracts.messages import Action, Progress, RobotProgress
+from onehop.contracts.messages import Action, Carriage, Progress, RobotProgress
 from onehop.drivers import inline
 from onehop.mission.stops import Stopped, StopRequest
 from onehop.scenario.bundle import Bundle
@@ -86,7 +86,7 @@ class _Watch:
         self._show = show
         self._next_show = 0.0
 
-    def look(self, world: World, actions: dict[int, Action]) -> None:
+    def look(self, world: World, actions: dict[int, Action], _: Carriage) -> None:
         self.world = world
         for fault in world.truth().faults:
             self._tell(f"{world.time_ns / 1e9:g} s: {fault_in_words(fault)}")

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from onehop.contracts import topics
 from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.briefings import radio_briefing, robot_briefing
-from onehop.contracts.messages import Action, Outcome, percept, running
+from onehop.contracts.messages import Action, Carriage, Outcome, percept, running
 from onehop.maps.map_file import load_map
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
@@ -14,11 +14,13 @@ from radio_proxy.core.radio import Radio
 from robot_agent.core.robot import Robot
 from world_server.core.world import World
 
-Watcher = Callable[[World, dict[int, Action]], None]
+Watcher = Callable[[World, dict[int, Action], Carriage], None]
 
 
 def run(bundle: Bundle, journal: Journal | None, watch: Watcher | None = None) -> Outcome:
-    """Run a mission to its outcome. watch is called after every tick with the actions of it."""
+    """Run a mission to its outcome. watch is called after every tick with its actions and
+    with what the radio did in it.
+    """
     scenario = bundle.scenario
     walls = load_map(scenario.map, bundle.files)
     world = World(scenario, walls)
@@ -55,6 +57,6 @@ def run(bundle: Bundle, journal: Journal | None, watch: Watcher | None = None) -
             messages += [(topics.out(i), encode(action)) for i, action in actions.items()]
             journal.add(truth.tick, messages)
         if watch is not None:
-            watch(world, actions)
+            watch(world, actions, carried)
         outcome = world.outcome()
     return outcome

@@ -16,13 +16,13 @@ from typing import Any
 from onehop.contracts.errors import ScenarioError
 from onehop.maps.map_file import LARGEST_FILE, map_files
 from onehop.scenario.bundle import Bundle
-from onehop.scenario.changes import apply_change
+from onehop.scenario.changes import Change, apply_change
 from onehop.scenario.structure import structure
 
 
 def load(
     path: Path,
-    settings: Iterable[str] = (),
+    settings: Iterable[str | Change] = (),
     seed: int | None = None,
     map_file: Path | None = None,
     start: tuple[float, float] | None = None,
@@ -30,7 +30,7 @@ def load(
 ) -> Bundle:
     """The mission in `path`, with what the command line changed.
 
-    settings: "key.path=value", value as TOML. Raises ScenarioError.
+    settings: "key.path=value", value as TOML, or the same as a Change. Raises ScenarioError.
     """
     table = _read_toml(path)
     directory = path.parent

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from onehop.contracts.messages import Action, Outcome
+from onehop.contracts.messages import Action, Carriage, Outcome
 from onehop.contracts.team import Mode, Shape, Status
 from onehop.drivers import inline
 from onehop.scenario import scenario_file
@@ -38,7 +38,7 @@ class Diary:
     seconds: list[float] = field(default_factory=list)
     statuses: list[dict[int, Status]] = field(default_factory=list)
 
-    def watch(self, world: World, actions: Mapping[int, Action]) -> None:
+    def watch(self, world: World, actions: Mapping[int, Action], _: Carriage) -> None:
         """Called by the driver after every tick."""
         self.seconds.append(world.time_ns / 1e9)
         self.statuses.append({i: action.status for i, action in actions.items()})
@@ -210,7 +210,7 @@ def test_passages_are_crossed_in_column_and_the_shape_stands_again_behind_them(s
     """
     seen: list[tuple[Shape, int | None, float]] = []
 
-    def watch(world: World, actions: Mapping[int, Action]) -> None:
+    def watch(world: World, actions: Mapping[int, Action], _: Carriage) -> None:
         pose = next(one.pose for one in world.truth().present if one.robot == 3)
         inside = [
             number

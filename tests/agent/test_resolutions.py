@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from onehop.contracts.messages import Action
+from onehop.contracts.messages import Action, Carriage
 from onehop.drivers import inline
 from onehop.scenario import scenario_file
 from world_server.core.world import World
@@ -48,8 +48,7 @@ def test_a_team_passes_a_narrow_passage_and_a_block(tmp_path: Path, seed, beams,
     path.write_text(SCENE)
     shapes = []
 
-    def watch(world: World, actions: dict[int, Action]) -> None:
-        del world
+    def watch(_: World, actions: dict[int, Action], __: Carriage) -> None:
         shapes.append(actions[2].status.shape.value)
 
     changes = (f"robot.laser_beams={beams}", f"clock.period_ms={period_ms}", f"seed={seed}")

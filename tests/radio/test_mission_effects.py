@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from onehop.contracts import topics
-from onehop.contracts.messages import Action, DeliveryStatus, RadioRecord, Verdict
+from onehop.contracts.messages import Action, Carriage, DeliveryStatus, RadioRecord, Verdict
 from onehop.contracts.team import Status
 from onehop.drivers import inline
 from onehop.scenario import scenario_file
@@ -43,7 +43,7 @@ class Diary:
     def hear(self, tick: int, record: list[tuple[str, bytes]]) -> None:  # noqa: ARG002
         self.records.append(decode(RadioRecord, dict(record)[topics.RADIO_RECORD]))
 
-    def watch(self, world: World, actions: Mapping[int, Action]) -> None:  # noqa: ARG002
+    def watch(self, _: World, actions: Mapping[int, Action], __: Carriage) -> None:
         self.statuses.append({i: action.status for i, action in actions.items()})
 
     def nexts(self, begin_s: float, end_s: float) -> list[Verdict]:

@@ -123,11 +123,19 @@ def test_a_map_file_that_is_not_there(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    "setting", ["team.size", "=3", "team..size=3", "team.size.x=3", "faults.7.at_s=1"]
+    "setting",
+    ["team.size", "=3", "team..size=3", "team.size.x=3", "faults.7.at_s=1", "faults[7].at_s=1", "[0]=1"],
 )
 def test_a_setting_of_the_wrong_form_is_refused(tmp_path: Path, setting: str) -> None:
     with pytest.raises(ScenarioError, match="--set"):
         field(tmp_path, setting)
+
+
+@pytest.mark.parametrize("key", ["faults[1].duration_s", "faults.1.duration_s"])
+def test_an_element_of_a_list_is_named_by_its_number(tmp_path: Path, key: str) -> None:
+    hold = '{kind="hold", at_s=1, robots=[1], duration_s=5}'
+    faults = field(tmp_path, f"faults=[{hold}, {hold}]", f"{key}=7").scenario.faults
+    assert [fault.duration_s for fault in faults] == [5.0, 7.0]
 
 
 def test_another_map_takes_the_scenarios_start_with_it(tmp_path: Path) -> None:

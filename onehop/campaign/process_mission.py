@@ -1,6 +1,6 @@
-"""A mission of chaos as processes, in a program of its own: it ends with whoever started it.
+"""A mission of a campaign as processes, in a program of its own: it ends with whoever started it.
 
-    python -m onehop.chaos.process_mission SCENARIO FOLDER --lifeline FD
+    python -m onehop.campaign.process_mission SCENARIO FOLDER --lifeline FD
 
 It runs the mission as `onehop run` does and prints the summary as JSON, without figure and viewer layer.
 """
