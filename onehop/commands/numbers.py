@@ -32,6 +32,9 @@ STATIONS = Range(1, 200)
 RUNS = Range(0, 10_000_000)
 """Missions of a campaign."""
 
+SEEDS = Range(1, 10_000_000)
+"""Missions of a cell."""
+
 JOBS = Range(1, 1000)
 """Worker processes."""
 

@@ -35,6 +35,10 @@ class ProgressLine:
         return self
 
     def __exit__(self, *_: object) -> None:
+        self.stop()
+
+    def stop(self) -> None:
+        """Take the line away: what comes now is the end."""
         if self._live is not None:
             self._live.stop()
 

@@ -77,7 +77,9 @@ def test_without_a_command_the_help_comes_and_status_2() -> None:
     assert told.stderr == ""
 
 
-@pytest.mark.parametrize("command", ["run", "replay", "elect", "link", "saturate", "plan", "doctor"])
+@pytest.mark.parametrize(
+    "command", ["run", "replay", "elect", "link", "saturate", "plan", "chaos", "sweep", "doctor"]
+)
 def test_help_has_an_example(command: str) -> None:
     answer = onehop(command, "--help")
     assert answer.returncode == 0

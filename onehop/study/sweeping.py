@@ -1,0 +1,210 @@
+"""A sweep in its folder: which missions, on which workers, what is left of each, and what they say.
+
+The folder holds missions.jsonl (a row each; a sweep that was stopped goes on from it), and at the end
+missions.parquet, sweep.json and, if they are kept, logs.
+"""
+
+import hashlib
+import json
+import re
+import time
+import warnings
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from onehop import __version__
+from onehop.campaign.lines import Lines, Listener, Row
+from onehop.campaign.process_mission import self_contained
+from onehop.campaign.workers import Crash, Run, workers
+from onehop.contracts.randomness import generator
+from onehop.scenario import scenario_file
+from onehop.scenario.bundle import Bundle
+from onehop.study.grid import Axis, Cell, cells
+from onehop.study.mission import Keep, MissionOrder, run_mission
+from onehop.study.table import Missions
+from onehop.wire.output_folder import explained, held
+
+ROWS, TABLE, SUMMARY, LOGS = "missions.jsonl", "missions.parquet", "sweep.json", "logs"
+
+LONGEST_NAME = 120
+"""Letters of a mission's name that its log's bears."""
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What a sweep is to run. base: the mission that the cells vary. seeds: the same in each cell.
+
+    processes: share of the missions that run as processes besides.
+    """
+
+    base: Bundle
+    cells: Sequence[Cell]
+    seeds: range
+    keep: Keep = "none"
+    processes: float = 0.0
+
+    @property
+    def total(self) -> int:
+        """How many missions."""
+        return len(self.cells) * len(self.seeds)
+
+    def about(self) -> dict[str, Any]:
+        """What must be the same to go on with a sweep: everything but which values and seeds."""
+        files = {name: hashlib.sha256(data).hexdigest() for name, data in self.base.files.items()}
+        return {
+            "onehop": __version__,
+            "scenario": Bundle(replace(self.base.scenario, seed=1), {}).scenario_json(),
+            "files": files,
+            "over": list(self.cells[0].values),
+            "keep": self.keep,
+            "processes": self.processes,
+        }
+
+    def orders(self, folder: Path) -> Iterator[MissionOrder]:
+        """Seed by seed, so that whenever it is stopped the cells have about the same seeds."""
+        varied = self.cells
+        if self.processes:
+            varied = [replace(one, bundle=self_contained(one.bundle, one.name)) for one in varied]
+        for seed in self.seeds:
+            for cell in varied:
+                name = f"{cell.name} seed={seed}".strip()
+                log = (folder / LOGS / f"{_file_name(name)}.mcap").absolute()
+                again = generator(seed, f"study/processes/{cell.name}").random() < self.processes
+                bundle = cell.with_seed(seed)
+                yield MissionOrder(name, cell.values, bundle, self.keep, log, again)
+
+
+@dataclass(frozen=True, slots=True)
+class Crashed:
+    """A mission that has no row, because its worker failed or died; the next call tries it again."""
+
+    name: str
+    why: str
+
+
+class Sweep:
+    """One sweep. rows: of the missions that were run, by cell and seed, whatever ended it."""
+
+    def __init__(self, wanted: Wanted, folder: Path, workers: Run, listener: Listener) -> None:
+        self._wanted = wanted
+        self._folder = folder
+        self._workers = workers
+        self._listener = listener
+        self.rows: list[Row] = []
+        self.crashed: list[Crashed] = []
+        self.wall_s = 0.0
+        self.run_now = 0
+        self._sim_s = 0.0
+
+    def run(self) -> None:
+        """Run what the folder lacks."""
+        orders = {order.name: order for order in self._wanted.orders(self._folder)}
+        if self._wanted.keep != "none":
+            with explained(self._folder / LOGS, "a folder that can be written, with room for logs"):
+                (self._folder / LOGS).mkdir(exist_ok=True)
+        with Lines(self._folder / ROWS, self._wanted.about()) as lines:
+            self.rows = [row for row in lines.rows if row["name"] in orders]
+            done = {row["name"] for row in self.rows}
+            missing = [order for name, order in orders.items() if name not in done]
+            started = time.monotonic()
+            self._listener.begin(len(done))
+            try:
+                for one in self._workers(run_mission, missing):
+                    if isinstance(one.result, Crash):
+                        self.crashed.append(Crashed(one.item.name, one.result.why))
+                        continue
+                    lines.add(one.result)
+                    self.rows.append(one.result)
+                    self.run_now += 1
+                    self._sim_s += one.result["sim_s"]
+                    self._listener.show(one.result)
+            finally:
+                self.wall_s = time.monotonic() - started
+                place = {
+                    json.dumps(cell.values): number for number, cell in enumerate(self._wanted.cells)
+                }
+                self.rows.sort(key=lambda row: (place[json.dumps(row["values"])], row["seed"]))
+
+    def missions(self) -> Missions:
+        """The rows as a table."""
+        return Missions(self._wanted.cells[0].values, self.rows)
+
+    def finish(self) -> dict[str, Any]:
+        """Write the table and what it says, and return that. Raises InputError."""
+        missions = self.missions()
+        table = self._folder / TABLE
+        ran = max(self.wall_s, 1e-9)
+        again = [row["as_processes"] for row in self.rows if row["as_processes"] is not None]
+        summary = {
+            "missions": len(self.rows),
+            "wanted": self._wanted.total,
+            "missions_per_s": round(self.run_now / ran, 4),
+            "sim_s_per_s": round(self._sim_s / ran, 1),
+            "table": str(table) if missions.write_parquet(table) else None,
+            "cells": missions.cells(),
+            "differences": missions.differences(),
+            "as_processes": dict(Counter(word.partition(":")[0] for word in again)),
+            "crashed": [{"mission": one.name, "why": one.why} for one in self.crashed],
+        }
+        path = self._folder / SUMMARY
+        with explained(path, "a folder that can be written"):
+            path.write_text(json.dumps(summary, indent=1) + "\n")
+        return summary
+
+
+def _file_name(name: str) -> str:
+    """What a file of this mission is called: legible, short, and like no other's."""
+    legible = re.sub(r"[^\w.=-]+", "_", name)[:LONGEST_NAME]
+    return f"{legible}-{hashlib.sha256(name.encode()).hexdigest()[:8]}"
+
+
+def sweep(
+    scenario: Path | str,
+    over: Mapping[str, Sequence[Any]],
+    *,
+    out: Path | str,
+    seeds: int = 20,
+    first_seed: int = 1,
+    settings: Iterable[str] = (),
+    jobs: int | None = None,
+    dask: str | None = None,
+    keep: Keep = "none",
+    processes: float = 0.0,
+) -> Missions:
+    """Run every combination of values of some keys, each with the same seeds, and give the missions.
+
+    over: values by key, e.g. {"gains.k_rho_min": [0.1, 0.3]}. out: the folder of the sweep; with one
+    that has results, only what is missing is run. settings: "key.path=value", for all of them. jobs:
+    processes, by default one a core; a script needs `if __name__ == "__main__":` for them. dask: address
+    of a scheduler whose workers are used instead. keep, processes: as in `onehop sweep --help`.
+
+    Raises InputError; warns of missions that have crashed.
+    """
+    path, folder, fixed = Path(scenario), Path(out), tuple(settings)
+    axes = [Axis(key, list(values)) for key, values in over.items()]
+    base = scenario_file.load(path, fixed)
+    varied = cells(path, fixed, axes, first_seed)
+    wanted = Wanted(base, varied, range(first_seed, first_seed + seeds), keep, processes)
+    with held(folder):
+        one = Sweep(wanted, folder, workers(jobs, dask), _Nobody())
+        try:
+            one.run()
+        finally:
+            one.finish()
+    if one.crashed:
+        first = one.crashed[0]
+        warnings.warn(f"{len(one.crashed)} missions crashed; {first.name}: {first.why}", stacklevel=2)
+    return one.missions()
+
+
+class _Nobody:
+    """Is told of missions, and does nothing."""
+
+    def begin(self, before: int) -> None:
+        """Nothing."""
+
+    def show(self, row: Row) -> None:
+        """Nothing."""
