@@ -74,12 +74,12 @@ def sweep(
     with held(folder), _Progress(wanted.total) as progress:
         one = Sweep(wanted, folder, workers(how_many.jobs, dask), progress)
         try:
-            one.run()
+            summary = one.run()
         except Stopped:
             progress.stop()
-            _tell(one.finish(), as_json)
+            if one.summary is not None:
+                _tell(one.summary, as_json)
             raise
-    summary = one.finish()
     _tell(summary, as_json)
     broken = summary["as_processes"].keys() & {DIFFERS, FAILED}
     return 1 if summary["crashed"] or broken else 0

@@ -86,7 +86,10 @@ class Crashed:
 
 
 class Sweep:
-    """One sweep. rows: of the missions that were run, by cell and seed, whatever ended it."""
+    """One sweep. rows: of the missions that were run, by cell and seed. summary: what they say.
+
+    Both are there, and written, whatever ends it; summary is None if it never began.
+    """
 
     def __init__(self, wanted: Wanted, folder: Path, workers: Run, listener: Listener) -> None:
         self._wanted = wanted
@@ -94,13 +97,13 @@ class Sweep:
         self._workers = workers
         self._listener = listener
         self.rows: list[Row] = []
+        self.summary: dict[str, Any] | None = None
         self.crashed: list[Crashed] = []
-        self.wall_s = 0.0
         self.run_now = 0
         self._sim_s = 0.0
 
-    def run(self) -> None:
-        """Run what the folder lacks."""
+    def run(self) -> dict[str, Any]:
+        """Run what the folder lacks, and give the summary. Raises InputError."""
         orders = {order.name: order for order in self._wanted.orders(self._folder)}
         if self._wanted.keep != "none":
             with explained(self._folder / LOGS, "a folder that can be written, with room for logs"):
@@ -122,21 +125,21 @@ class Sweep:
                     self._sim_s += one.result["sim_s"]
                     self._listener.show(one.result)
             finally:
-                self.wall_s = time.monotonic() - started
                 place = {
                     json.dumps(cell.values): number for number, cell in enumerate(self._wanted.cells)
                 }
                 self.rows.sort(key=lambda row: (place[json.dumps(row["values"])], row["seed"]))
+                self.summary = self._finish(time.monotonic() - started)
+        return self.summary
 
     def missions(self) -> Missions:
         """The rows as a table."""
         return Missions(self._wanted.cells[0].values, self.rows)
 
-    def finish(self) -> dict[str, Any]:
-        """Write the table and what it says, and return that. Raises InputError."""
-        missions = self.missions()
-        table = self._folder / TABLE
-        ran = max(self.wall_s, 1e-9)
+    def _finish(self, wall_s: float) -> dict[str, Any]:
+        """Write the table and what it says, and return that."""
+        missions, table = self.missions(), self._folder / TABLE
+        ran = max(wall_s, 1e-9)
         again = [row["as_processes"] for row in self.rows if row["as_processes"] is not None]
         summary = {
             "missions": len(self.rows),
@@ -190,10 +193,7 @@ def sweep(
     wanted = Wanted(base, varied, range(first_seed, first_seed + seeds), keep, processes)
     with held(folder):
         one = Sweep(wanted, folder, workers(jobs, dask), _Nobody())
-        try:
-            one.run()
-        finally:
-            one.finish()
+        one.run()
     if one.crashed:
         first = one.crashed[0]
         warnings.warn(f"{len(one.crashed)} missions crashed; {first.name}: {first.why}", stacklevel=2)
