@@ -59,6 +59,9 @@ ROUTER_THREADS = ONE_THREAD.replace("acc: (handover: net)", "acc: (worker_thread
 """The router's: new connections have a thread of their own. To close one that never said who it is takes
 5 ms (SO_LINGER), in which the thread can do nothing else; strangers may open as many as they like."""
 
+WAITING_QUERIES = 256
+"""Queries that wait for their answer, at most: the 300 robots of a mission do not ask all at once."""
+
 LOW_LATENCY = (topics.RADIO, topics.robot_name(""))
 """Beginnings of the names of those whom every tick waits for: their links are of Zenoh's low-latency
 transport, which writes from the thread of the sender instead of waking another one."""
@@ -228,23 +231,31 @@ class Bus:
     def answering(self, key: str, reply: Callable[[str], bytes | None]) -> Iterator[None]:
         """Answer queries on an expression meanwhile: reply(key) gives the bytes, or None for no answer.
 
-        At any other time the router itself says to whoever asks that there is nobody to answer.
+        At any other time the router itself says to whoever asks that there is nobody to answer. Of more
+        than WAITING_QUERIES the oldest is dropped; who asked it hears so, and asks again. If they were
+        held back instead, Zenoh's network thread would wait here for an answer to a peer that does not
+        read, and that answer for the network thread.
         """
         prefix = len(self._mission) + 1
+        ring: Any = zenoh.handlers.RingChannel(WAITING_QUERIES)
+        queryable: Any = self._session.declare_queryable(self._key(key), ring)
 
-        def asked(query: zenoh.Query) -> None:
-            with query:
-                data = reply(str(query.key_expr)[prefix:])
-                if data is not None:
-                    for leading in leading_parts(data):
-                        query.reply(query.key_expr, leading, attachment=topics.PART)
-                    query.reply(query.key_expr, last_part(data))
+        def answer_all() -> None:
+            for query in queryable:
+                with query:
+                    data = reply(str(query.key_expr)[prefix:])
+                    if data is not None:
+                        for leading in leading_parts(data):
+                            query.reply(query.key_expr, leading, attachment=topics.PART)
+                        query.reply(query.key_expr, last_part(data))
 
-        queryable: Any = self._session.declare_queryable(self._key(key), self._callback(asked))
+        answerer = threading.Thread(target=answer_all, name="answers", daemon=True)
+        answerer.start()
         try:
             yield
         finally:
             queryable.undeclare()
+            answerer.join()
 
     def ask(self, key: str, timeout_s: float) -> bytes | None:
         """The first answer to a query on a key, None when none comes in time, or not all of it."""
