@@ -43,6 +43,7 @@ class LockStep:
         self.faults.carry_out(truth, self.orders.arrived)
         encoded_truth = encode(truth)
         self.radio.send(encoded_truth)
+        self.recording.hand_over_batch()
         observations = [(topics.obs(i), encode(seen)) for i, seen in world.observe().items()]
         carried = self.radio.carried(truth.tick)
         answers = self.robots.step(truth, dict(observations), dict(carried))

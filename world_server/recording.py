@@ -31,7 +31,10 @@ class Recording:
             raise MissionBrokenError("the recorder does not keep up")
         self._batch.append((tick, messages))
         self.last_tick = tick
-        if len(self._batch) == BATCH_TICKS:
+
+    def hand_over_batch(self) -> None:
+        """Send what has been added if it is a whole batch: at a moment when somebody else is at work."""
+        if len(self._batch) >= BATCH_TICKS:
             self.hand_over()
 
     def hand_over(self) -> None:

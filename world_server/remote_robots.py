@@ -1,13 +1,13 @@
 """The robots as the world calls them: a percept to each that is present, an action back from each."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import partial
 
 from onehop.contracts import topics
 from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import Action, Truth, running
+from onehop.contracts.messages import Action, Presence, Truth, running
 from onehop.node.bus import Bus
 from onehop.wire.batch import pack_tick
 from onehop.wire.codec import decode
@@ -59,12 +59,12 @@ class RemoteRobots:
 
         observations, inboxes: wire messages of this tick by log channel. Raises MissionBrokenError.
         """
-        self._tick = truth.tick
+        self._tick, runners = truth.tick, running(truth)
         self._incarnations = {one.robot: one.incarnation for one in truth.present}
-        self._awaited = {topics.robot_name(one.robot): one.incarnation for one in running(truth)}
+        self._awaited = {topics.robot_name(one.robot): one.incarnation for one in runners}
         self._given.clear()
         self._refused.clear()
-        for one in running(truth):
+        for one in runners:
             seen, heard = topics.obs(one.robot), topics.rx(one.robot)
             if heard not in inboxes:
                 raise MissionBrokenError(f"the radio carried no inbox for robot {one.robot}")
@@ -73,11 +73,11 @@ class RemoteRobots:
         present, awaited = self._roll.present, self._awaited.keys()
         self._mail.wait(lambda: awaited.isdisjoint(present), self._silence_s)
         self._awaited.clear()
-        return self._answers(truth)
+        return self._answers(runners)
 
-    def _answers(self, truth: Truth) -> Answers:
+    def _answers(self, asked: Iterable[Presence]) -> Answers:
         answers = Answers()
-        for one in running(truth):
+        for one in asked:
             i = one.robot
             if self._unasked.pop(i, None) == one.incarnation:
                 self._given.pop(i, None)

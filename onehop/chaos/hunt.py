@@ -7,8 +7,7 @@ failure that was made small a folder with its scenario file and its log, and cha
 import time
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
-from itertools import groupby
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -134,20 +133,17 @@ class Hunt:
     def shrink(self, most_runs: int = MOST_RUNS) -> None:
         """Make the first failures of each property small, and write them as scenario files."""
         orders = {order.name: order for order in self._wanted.orders()}
-        wanted: dict[tuple[str, str], Found] = {}
-        by_property = sorted(self.found, key=lambda one: one.failure.property)
-        for _, group in groupby(by_property, key=lambda one: one.failure.property):
-            for one in list(group)[:SHRUNK_EACH]:
-                wanted[one.name, one.failure.property] = one
-        work = [ShrinkOrder(orders[one.name], one.failure, most_runs) for one in wanted.values()]
+        seen: Counter[str] = Counter()
+        work = []
+        for place, one in enumerate(self.found):
+            seen[one.failure.property] += 1
+            if seen[one.failure.property] <= SHRUNK_EACH:
+                work.append(ShrinkOrder(place, orders[one.name], one.failure, most_runs))
         for done in self._run(shrink_failure, work):
-            if isinstance(done.result, Crash):
-                continue
-            order, key = done.item.order, (done.item.order.name, done.item.failure.property)
-            path = self._write(order, done.result)
-            place = self.found.index(wanted[key])
-            before = wanted[key]
-            self.found[place] = Found(before.name, before.seed, before.failure, path, done.result)
+            if not isinstance(done.result, Crash):
+                path = self._write(done.item.order, done.result)
+                known = self.found[done.item.place]
+                self.found[done.item.place] = replace(known, scenario=path, shrunk=done.result)
 
     def _write(self, order: MissionOrder, shrunk: Shrunk) -> Path:
         folder = self._folder / FAILURES / f"{Path(order.name).stem}-{shrunk.failure.property}"
@@ -198,7 +194,8 @@ def _comment(order: MissionOrder, shrunk: Shrunk, path: Path) -> str:
         f"{len(before.team.robots)} robots -> {len(after.team.robots)}, "
         f"{len(before.map.obstacles)} obstacles -> {len(after.map.obstacles)}"
     )
-    end = "nothing more can be taken away" if shrunk.is_smallest else "the runs were used up"
+    spent = "the runs were used up" if shrunk.runs else "left as it was"
+    end = "nothing more can be taken away" if shrunk.is_smallest else spent
     return (
         f"{failure.property} at {at_s:.2f} s{who}: {failure.what}\n"
         f"From {order.name} ({sizes}; {shrunk.runs} runs, {end}).\n"

@@ -42,8 +42,9 @@ class MissionOrder:
 
 @dataclass(frozen=True, slots=True)
 class ShrinkOrder:
-    """One failure of a mission to make small."""
+    """One failure of a mission to make small. place: among all that were found."""
 
+    place: int
     order: MissionOrder
     failure: Failure
     most_runs: int

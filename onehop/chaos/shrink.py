@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from onehop.chaos.properties import ARRIVAL, CRASH
+from onehop.chaos.properties import ARRIVAL, CRASH, HANG, SAME_BYTES
 from onehop.chaos.trial import Failure, Trial, tried
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.radio_section import RadioSection
@@ -86,7 +86,12 @@ def _cause(failure: Failure) -> tuple[str, str]:
 
 
 def shrink(bundle: Bundle, failure: Failure, most_runs: int = MOST_RUNS, try_it: Try = tried) -> Shrunk:
-    """Make a mission small in which a property fails. try_it: runs and judges a candidate."""
+    """Make a mission small in which a property fails. try_it: runs and judges a candidate.
+
+    One that hangs, or whose bytes differ only when it is repeated, is left as it is.
+    """
+    if failure.property in (HANG, SAME_BYTES):
+        return Shrunk(bundle, failure, 0, is_smallest=False)
     search = _Search(bundle, failure, most_runs, try_it)
     try:
         while sum(step(search) for step in _STEPS):  # every step, whatever the others took

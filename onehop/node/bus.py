@@ -28,7 +28,7 @@ from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.node import peer_limits
 from onehop.node.gate import Gate, limit_unread
-from onehop.node.parts import ROBOT_LINK_BYTES, Parts, last_part, leading_parts
+from onehop.node.parts import PART_BYTES, Parts, last_part, leading_parts
 from onehop.node.rights import access_control
 
 T = TypeVar("T")
@@ -59,11 +59,19 @@ ROUTER_THREADS = ONE_THREAD.replace("acc: (handover: net)", "acc: (worker_thread
 """The router's: new connections have a thread of their own. To close one that never said who it is takes
 5 ms (SO_LINGER), in which the thread can do nothing else; strangers may open as many as they like."""
 
+WAITING_QUERIES = 256
+"""Queries that wait for their answer, at most: the 300 robots of a mission do not ask all at once."""
+
+LOW_LATENCY = (topics.RADIO, topics.robot_name(""))
+"""Beginnings of the names of those whom every tick waits for: their links are of Zenoh's low-latency
+transport, which writes from the thread of the sender instead of waking another one."""
+
 _QUIET = {
     "scouting/multicast/enabled": False,
     "scouting/gossip/enabled": False,
     "transport/shared_memory/enabled": False,
     "transport/unicast/qos/enabled": False,
+    "timestamping/enabled": False,
 }
 """What nobody here uses. Without priorities a link is of low latency if both of its ends ask for it."""
 
@@ -139,14 +147,16 @@ class Bus:
             express=express,
         )
         self._kept.append(publisher)
-        return self._in_parts(publisher.put, key) if _is_of_robot(key) else publisher.put
+        _, _, to_or_by = key.partition("/")
+        in_parts = to_or_by.startswith(LOW_LATENCY)
+        return self._in_parts(publisher.put, key) if in_parts else publisher.put
 
     def _in_parts(self, put: Callable[[bytes], None], key: str) -> Callable[[bytes], None]:
-        """put for a robot's link, for messages of any length."""
+        """put for a link of low latency, for messages of any length."""
         part = self._key(key.rpartition("/")[0] + "/" + topics.PART)
 
         def put_all(data: bytes) -> None:
-            if len(data) > ROBOT_LINK_BYTES:
+            if len(data) > PART_BYTES:
                 for leading in leading_parts(data):
                     self._session.put(part, leading, congestion_control=zenoh.CongestionControl.BLOCK)
                 data = last_part(data)
@@ -221,32 +231,42 @@ class Bus:
     def answering(self, key: str, reply: Callable[[str], bytes | None]) -> Iterator[None]:
         """Answer queries on an expression meanwhile: reply(key) gives the bytes, or None for no answer.
 
-        At any other time the router itself says to whoever asks that there is nobody to answer.
+        At any other time the router itself says to whoever asks that there is nobody to answer. Of more
+        than WAITING_QUERIES the oldest is dropped; who asked it hears so, and asks again. If they were
+        held back instead, Zenoh's network thread would wait here for an answer to a peer that does not
+        read, and that answer for the network thread.
         """
         prefix = len(self._mission) + 1
+        ring: Any = zenoh.handlers.RingChannel(WAITING_QUERIES)
+        queryable: Any = self._session.declare_queryable(self._key(key), ring)
 
-        def asked(query: zenoh.Query) -> None:
-            with query:
-                data = reply(str(query.key_expr)[prefix:])
-                if data is not None:
-                    query.reply(query.key_expr, data)
+        def answer_all() -> None:
+            for query in queryable:
+                with query:
+                    data = reply(str(query.key_expr)[prefix:])
+                    if data is not None:
+                        for leading in leading_parts(data):
+                            query.reply(query.key_expr, leading, attachment=topics.PART)
+                        query.reply(query.key_expr, last_part(data))
 
-        queryable: Any = self._session.declare_queryable(self._key(key), self._callback(asked))
+        answerer = threading.Thread(target=answer_all, name="answers", daemon=True)
+        answerer.start()
         try:
             yield
         finally:
             queryable.undeclare()
+            answerer.join()
 
     def ask(self, key: str, timeout_s: float) -> bytes | None:
-        """The first answer to a query on a key, None when none comes in time."""
-        for reply in self._session.get(self._key(key), timeout=timeout_s):
+        """The first answer to a query on a key, None when none comes in time, or not all of it."""
+        answer = bytearray()
+        every_part = zenoh.ConsolidationMode.NONE
+        for reply in self._session.get(self._key(key), timeout=timeout_s, consolidation=every_part):
             if reply.ok is not None:
-                return reply.ok.payload.to_bytes()
+                answer += reply.ok.payload.to_bytes()
+                if reply.ok.attachment is None:
+                    return bytes(answer)
         return None
-
-
-def _is_of_robot(key: str) -> bool:
-    return f"/{topics.robot_name('')}" in key
 
 
 def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | None = None) -> Bus:
@@ -294,7 +314,7 @@ def open_client(
         "connect/exit_on_failure": True,
         "connect/retry": {"period_init_ms": 20, "period_max_ms": 200, "period_increase_factor": 1.5},
         "listen/endpoints": [],
-        "transport/unicast/lowlatency": name.startswith(topics.robot_name("")),
+        "transport/unicast/lowlatency": name.startswith(LOW_LATENCY),
     }
     if password is not None:
         settings["transport/auth/usrpwd"] = {"user": name, "password": password}

@@ -1,29 +1,28 @@
-"""Messages to and from robots that are longer than their links carry: they travel in parts.
+"""Messages that are longer than a link of low latency carries: they travel in parts.
 
-A robot's link is Zenoh's low-latency transport, which writes to the socket from the sender's thread (a
-tick costs a quarter less CPU) but knows no fragments: it would drop what is longer without a word. A
-percept has no useful bound: a scan has up to 40 kB, and the air alone up to 1.4 MB from each robot in
-reach in a tick of a second. So every part but the last goes under a key of its own. A link keeps the
-order, and what comes next from the same sender is the rest.
+Zenoh's low-latency transport writes to the socket from the sender's thread, but knows no fragments: it
+would drop what is longer without a word. A percept has no useful bound: a scan has up to 40 kB, and the
+air alone up to 1.4 MB from each robot in reach in a tick of a second. So every part but the last goes
+under a key of its own. A link keeps the order, and what comes next from the same sender is the rest.
 """
 
 from collections.abc import Iterator
 
 from onehop.contracts import topics
 
-ROBOT_LINK_BYTES = 48_000
+PART_BYTES = 48_000
 """Longest part: what low-latency transport takes, 65,535 bytes less the key and its headers, rounded."""
 
 
 def leading_parts(data: bytes) -> Iterator[bytes]:
     """All parts but the last."""
-    for start in range(0, len(data) - ROBOT_LINK_BYTES, ROBOT_LINK_BYTES):
-        yield data[start : start + ROBOT_LINK_BYTES]
+    for start in range(0, len(data) - PART_BYTES, PART_BYTES):
+        yield data[start : start + PART_BYTES]
 
 
 def last_part(data: bytes) -> bytes:
     """The rest, never empty unless the message is."""
-    return data[(len(data) - 1) // ROBOT_LINK_BYTES * ROBOT_LINK_BYTES :] if data else data
+    return data[(len(data) - 1) // PART_BYTES * PART_BYTES :] if data else data
 
 
 class Parts:

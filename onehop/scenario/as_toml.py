@@ -12,7 +12,8 @@ from onehop.contracts.scenario import Scenario
 def as_toml(scenario: Scenario, comment: str = "") -> str:
     """The text; `scenario_file.load` reads the same scenario from it. comment: lines to begin with.
 
-    A map file is named as in the scenario: it has to lie where its name says, seen from the text's file.
+    With a profile its sections are written out, since what they leave out would be filled in. A map file
+    is named as in the scenario: it has to lie where its name says, seen from the text's file.
     """
     lines = [f"# {line}".rstrip() for line in comment.splitlines()]
     lines += [""] if lines else []
@@ -26,16 +27,16 @@ def as_toml(scenario: Scenario, comment: str = "") -> str:
     for one in fields(scenario):
         section = getattr(scenario, one.name)
         if is_dataclass(section):
-            changed = list(_changed(section))
+            changed = list(_changed(section, is_profiled=scenario.profile != "team"))
             if changed:
                 lines += ["", f"[{one.name}]", *changed]
     return "\n".join(lines) + "\n"
 
 
-def _changed(section: Any) -> Iterator[str]:
+def _changed(section: Any, is_profiled: bool) -> Iterator[str]:
     for one in fields(section):
         value = getattr(section, one.name)
-        if value != _default(one):
+        if value is not None and (is_profiled or value != _default(one)):
             yield f"{one.name} = {_value(value)}"
 
 

@@ -86,7 +86,8 @@ def load_kernels(folder: Path) -> None:
         (folder / name).write_bytes(content)
     for name in ("m.map", "m.yaml"):
         with contextlib.redirect_stdout(io.StringIO()):
-            plan(folder / name, "3,6", "9,6", None, None, None, ["clock.limit_s=0.15"], None, True)
+            keys = ["clock.limit_s=0.15"]
+            plan(folder / name, "3,6", "9,6", None, None, None, keys, None, None, as_json=True)
 
 
 def read(folder: Path) -> None:

@@ -18,6 +18,7 @@ import zenoh
 
 from onehop.contracts.errors import MissionError
 from onehop.mission.processes import free_endpoint
+from onehop.node import startup
 from onehop.node.bus import ALIVE, GONE, Bus, make_credentials, open_client, open_router, session_id
 from tests.live.hostile import open_session
 from tests.live.mission import DEADLINE_S, Mission
@@ -113,7 +114,9 @@ def test_a_peer_that_reads_nothing_costs_the_others_a_second(house: House) -> No
 def test_a_peer_that_asks_without_end_keeps_nobody_from_being_answered(house: House) -> None:
     with house.world.answering("config/*", lambda _: bytes(2000)):
         house.hostile("robot-2", 8000, session_id(house.words["robot-2"]))
-        assert house.honest.ask("config/robot-1", SOON_S) == bytes(2000)
+        started = time.monotonic()
+        assert startup.briefing(house.honest, "robot-1") == bytes(2000)  # one query of it may be dropped
+        assert time.monotonic() - started < SOON_S
     assert house.reaches_the_honest(SOON_S)
 
 

@@ -242,3 +242,15 @@ class TeamNet:
             assert i in status.members
             shapes = {formation(status.members, narrow).shape for narrow in (False, True)}
             assert status.shape in shapes
+
+
+def drive(team=None, seconds=20.0):
+    """A team on its way."""
+    net = TeamNet(team or TeamSection())
+    net.run(seconds)
+    return net
+
+
+def thesis(**keys):
+    """The team of the thesis's own rules."""
+    return TeamSection(profile="thesis", leader_timeout=6.0, **keys)

@@ -11,21 +11,10 @@ from onehop.contracts.team import Mode, Shape
 from robot_agent.core.team.join_probation import JoinProbation
 from robot_agent.core.team.roster import Roster
 from robot_agent.core.team.team_messages import Beacon, Command, CommandKind, Join, MissionPhase, encode
-from tests.agent.team.team_net import TeamNet
+from tests.agent.team.team_net import TeamNet, drive, thesis
 
 NEXT_PERIOD = 2.0
 BOUND = 4 * NEXT_PERIOD
-
-
-def drive(team=None, seconds=20.0):
-    """A team on its way."""
-    net = TeamNet(team or TeamSection())
-    net.run(seconds)
-    return net
-
-
-def thesis(**keys):
-    return TeamSection(profile="thesis", leader_timeout=6.0, **keys)
 
 
 def test_setup_ends_when_all_are_in_position_and_the_leader_waits_for_it():
@@ -96,33 +85,6 @@ def test_leader_3_stopped_makes_4_lead_a_wedge(profile):
     assert net.leaders() == (4,)
     assert net.agree()
     assert {net.status(i).shape for i in net.members} == {Shape.WEDGE}
-
-
-@pytest.mark.parametrize(("keys", "most"), [({"target_timeout": 2.0}, 2.5), ({}, 6.0)])
-def test_who_stands_in_its_slot_gives_a_silent_leader_up_t_later(keys, most):
-    """Thesis 4.3: T after the target is reached; a quarter of a period is the grace of a Next."""
-    net = drive(thesis(**keys))
-    net.kill(3)
-    killed = net.seconds
-    while 4 not in net.leaders():
-        net.step()
-    assert most - 2.0 < net.seconds - killed <= most + 0.5
-
-
-def test_who_has_not_reached_its_slot_waits_longer_for_its_leader_but_not_for_ever():
-    net = drive(thesis(target_timeout=2.0))
-    slot = net.members[5].pose
-    held = Pose(slot.x - 3.0, slot.y, slot.heading)
-    net.kill(3)
-    killed, given_up = net.seconds, {}
-    while net.seconds < killed + 8.0:
-        net.members[5].pose = held
-        net.step()
-        for _, robot, note in net.notes:
-            if note.kind == "lost_leader" and note.data["leader"] == 3:
-                given_up.setdefault(robot, net.seconds - killed)
-    assert max(given_up[i] for i in (1, 2, 4, 6)) <= 3.0
-    assert 3.0 < given_up[5] <= 6.5
 
 
 def test_figure_3_4_a_leader_3_fails_among_1_2_4_5():

@@ -4,17 +4,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from onehop.node.parts import ROBOT_LINK_BYTES, Parts, last_part, leading_parts
+from onehop.node.parts import PART_BYTES, Parts, last_part, leading_parts
 
-FITS = ROBOT_LINK_BYTES
+FITS = PART_BYTES
 
 
 @pytest.mark.parametrize("size", [0, 1, FITS, FITS + 1, 2 * FITS, 2 * FITS + 1, 10 * FITS - 1])
 def test_every_part_fits_and_together_they_are_the_message(size: int) -> None:
     data = bytes(number % 251 for number in range(size))
     leading = list(leading_parts(data))
-    assert all(len(part) == ROBOT_LINK_BYTES for part in leading)
-    assert len(last_part(data)) <= ROBOT_LINK_BYTES
+    assert all(len(part) == PART_BYTES for part in leading)
+    assert len(last_part(data)) <= PART_BYTES
     parts = Parts(size)
     assert [parts.joined("part", part) for part in leading] == [None] * len(leading)
     assert parts.joined("percept", last_part(data)) == data

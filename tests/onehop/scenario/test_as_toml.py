@@ -15,7 +15,7 @@ from onehop.scenario.as_toml import as_toml
 from onehop.scenario.structure import structure
 from tests.onehop.scenes import field
 
-SCENARIOS = sorted((Path(__file__).parents[3] / "scenarios").glob("*.toml"))
+SCENARIOS = sorted((Path(__file__).parents[3] / "scenarios").rglob("*.toml"))
 
 
 @pytest.mark.parametrize("path", SCENARIOS, ids=lambda path: path.stem)
@@ -38,6 +38,18 @@ def test_whatever_it_is_called(name: str) -> None:
         return
     scenario = structure(table, "it")
     assert structure(tomllib.loads(as_toml(scenario)), "it") == scenario
+
+
+def test_what_a_profile_would_fill_in_is_said(tmp_path: Path) -> None:
+    table = {
+        "name": "a",
+        "profile": "thesis",
+        "goal": {"x": 1, "y": 1},
+        "map": {"width": 9, "height": 9},
+    }
+    scenario = structure({**table, "gains": {"reverse": False}}, "it")
+    (tmp_path / "a.toml").write_text(as_toml(scenario))
+    assert scenario_file.load(tmp_path / "a.toml").scenario == scenario
 
 
 def test_only_what_is_not_usual_is_said(tmp_path: Path) -> None:

@@ -18,7 +18,10 @@ def test_a_folder_is_made_and_nothing_is_left_in_it(tmp_path: Path) -> None:
 
 
 def test_a_folder_belongs_to_one_mission_at_a_time(tmp_path: Path) -> None:
-    with claimed(tmp_path), pytest.raises(InputError, match="another mission is writing there"):
+    with (
+        claimed(tmp_path),
+        pytest.raises(InputError, match="another mission or campaign is writing there"),
+    ):
         claimed(tmp_path).__enter__()
     with claimed(tmp_path):
         pass
