@@ -237,7 +237,7 @@ def test_a_second_mission_into_the_same_folder_is_refused(start: Start, tmp_path
         )
         assert second.returncode == 2
         assert second.stderr == (
-            f"onehop: {mission.out}: another mission is writing there; "
+            f"onehop: {mission.out}: another mission or campaign is writing there; "
             "wait for its end, or give another --out\n"
         )
     expected = log_of(field(tmp_path, "clock.limit_s=20"), tmp_path / "inline.mcap")
