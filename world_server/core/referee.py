@@ -20,7 +20,7 @@ from onehop.contracts.sections import beside_goal
 from onehop.contracts.team import Mode, Shape, Status, loss_in_words
 
 STILL = 0.02
-"""Speed below which a robot stands still [m/s]."""
+"""Speed below which a robot stands still [m/s]; of one without a team its turning too [rad/s]."""
 
 _REST_S = 2.0
 """Standing still this long counts as having stopped [s]; a Next period of the thesis (3.3.2)."""
@@ -130,6 +130,8 @@ class Referee:
             robot = one.robot
             if not -STILL < one.twist.v < STILL or robot in now.waiting:
                 self._moved_ns = now.time_ns
+            elif now.is_teamless(robot) and not -STILL < one.twist.w < STILL:
+                self._moved_ns = now.time_ns  # it may look around for its way
             status = now.statuses.get(robot)
             if status is not None:
                 self._leadership.on_status(
