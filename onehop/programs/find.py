@@ -6,6 +6,7 @@ import sys
 import traceback
 from collections.abc import Iterable
 from dataclasses import is_dataclass
+from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from onehop.contracts.errors import InputError, ScenarioError
@@ -24,10 +25,28 @@ def search_in(folder: str) -> None:
             sys.path.insert(0, place)
 
 
+GROUP = "onehop.programs"
+"""Entry points by which an installed package offers programs under names of their own."""
+
+
+def installed() -> list[EntryPoint]:
+    """Programs that packages offer, by name."""
+    return sorted(entry_points(group=GROUP), key=lambda one: (one.name, one.value))
+
+
 def find(name: str, where: str = "program") -> type[Program]:
-    """The class of a program, "package.module:Class". Raises InputError. where: what to call its key."""
-    module_name, _, class_name = name.partition(":")
+    """The class of a program. Raises InputError. where: what to call its key.
+
+    name: "package.module:Class", or the name under which an installed package offers it.
+    """
     remedy = '"package.module:Class", installed or in the folder of the scenario'
+    value = name
+    if ":" not in name:
+        value = next((one.value for one in installed() if one.name == name), "")
+        if not value:
+            names = ", ".join(dict.fromkeys(one.name for one in installed())) or "none"
+            raise InputError(where, f"{name!r} is offered by no package", f"{remedy}, or of {names}")
+    module_name, _, class_name = value.partition(":")
     try:
         module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
