@@ -62,7 +62,8 @@ class _Recorder:
         self._path = None if options.no_file else options.out / LOG
         self._log: LogWriter | None = None
         if self._path is not None:
-            bundle = bundle_from_json(briefing.scenario_json, dict(briefing.files), "briefing")
+            files = dict(briefing.files)
+            bundle = bundle_from_json(briefing.scenario_json, files, "briefing", briefing.programs)
             with explained(self._path, REMEDY):
                 self._log = LogWriter(self._path, bundle, briefing.driver)
         self._journal = Journal(self._write)

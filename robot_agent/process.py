@@ -1,7 +1,11 @@
-"""The shell of one robot: hear its observation and inbox of a tick, step the core, put the action."""
+"""The shell of one robot: hear its observation and inbox of a tick, step its program, put the action.
+
+Which program that is says its briefing. One that fails says so to the world, and on stderr in full.
+"""
 
 import os
 import signal
+import sys
 import time
 
 from onehop.contracts import topics
@@ -9,40 +13,60 @@ from onehop.contracts.briefings import Briefing
 from onehop.contracts.messages import Inbox, Observation, percept
 from onehop.node import startup
 from onehop.node.bus import ALIVE, GONE, Bus
+from onehop.programs.find import search_in
+from onehop.programs.host import Host, ProgramError
 from onehop.wire.batch import unpack_tick
-from onehop.wire.codec import decode, encode
-from robot_agent.core.robot import Robot
+from onehop.wire.codec import decode
+from robot_agent.watchdog import Watchdog
 
 
 def main() -> int:
     parser = startup.arguments("robot_agent", "One robot of a mission.")
     startup.add_connect(parser)
     parser.add_argument("--id", type=int, required=True, help="id of the robot, from 1")
+    parser.add_argument("--programs", default="", metavar="DIR", help="where to look for its program")
     options = parser.parse_args()
     startup.start(options)
     name = topics.robot_name(options.id)
     with startup.connect(options, name) as bus:
         bus.watch(topics.WORLD)
         arrival = bus.publisher(topics.by(name, topics.ARRIVAL))
-        robot = Robot(decode(Briefing, startup.briefing(bus, name, lambda: arrival(b""))))
+        briefing = decode(Briefing, startup.briefing(bus, name, lambda: arrival(b"")))
+        search_in(options.programs)
+        host = Host(briefing)
         startup.calm_garbage_collector()
-        return _serve(bus, robot, name)
+        return _serve(bus, host, name, briefing.silence_s)
 
 
 REUNION_S = 10.0
 """How long a process that was stopped looks for the world [s], when its session has been given up."""
 
 
-def _serve(bus: Bus, robot: Robot, name: str) -> int:
+def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int:
     put = bus.publisher(topics.by(name, topics.OUT))
     put_awake = bus.publisher(topics.by(name, topics.AWAKE))
+    put_failure = bus.publisher(topics.by(name, topics.FAILED))
+
+    def fail(failure: ProgramError) -> int:
+        print(failure.account, file=sys.stderr, flush=True)
+        put_failure(failure.reason.encode())
+        return startup.PROGRAM_FAILED
+
+    watchdog = Watchdog(silence_s, lambda failure: os._exit(fail(failure)))
     bus.announce(name)
     will_be_stopped = False
     while True:
         what, data = bus.receive()
         if what == topics.PERCEPT:
             _, ((_, seen), (_, heard)) = unpack_tick(data)
-            put(encode(robot.step(percept(decode(Observation, seen), decode(Inbox, heard)))))
+            now = percept(decode(Observation, seen), decode(Inbox, heard))
+            watchdog.steps += 1
+            try:
+                put(host.step(now))
+            except ProgramError as failure:
+                return fail(failure)
+            finally:
+                watchdog.steps += 1
             will_be_stopped = False
         elif what in (topics.STOP, topics.WAKE):
             will_be_stopped = True

@@ -56,15 +56,17 @@ def _settings() -> dict[str, Any]:
 
 
 def _pure() -> list[Path]:
-    """Folders of what decides, which lint-imports keeps pure as well."""
+    """Folders and modules of what decides, which lint-imports keeps pure as well."""
     (rule,) = (each for each in _settings()["contracts"] if each["name"].startswith("What decides"))
-    return [ROOT.joinpath(*name.split(".")) for name in rule["source_modules"]]
+    places = [ROOT.joinpath(*name.split(".")) for name in rule["source_modules"]]
+    return [place if place.is_dir() else place.with_suffix(".py") for place in places]
 
 
-def _sources(folders: list[Path]) -> Iterator[Path]:
-    for folder in folders:
-        assert any(folder.rglob("*.py")), f"{folder} has no modules"
-        yield from sorted(folder.rglob("*.py"))
+def _sources(places: list[Path]) -> Iterator[Path]:
+    for place in places:
+        modules = [place] if place.is_file() else sorted(place.rglob("*.py"))
+        assert modules, f"{place} has no modules"
+        yield from modules
 
 
 def _all_findings() -> list[Finding]:

@@ -27,7 +27,8 @@ class Briefings:
         self._incarnation = incarnation
         self._answered: Counter[tuple[str, int]] = Counter()
         self._robots = {topics.config(topics.robot_name(i)): i for i in bundle.scenario.team.robots}
-        log = LogBriefing(driver, bundle.scenario_json(), tuple(sorted(bundle.files.items())))
+        files = tuple(sorted(bundle.files.items()))
+        log = LogBriefing(driver, bundle.scenario_json(), files, bundle.folder)
         self._others = {
             topics.config(topics.RADIO): encode(radio_briefing(bundle.scenario, walls)),
             topics.config(topics.RECORDER): encode(log),

@@ -10,8 +10,8 @@ from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import Action, Presence, Truth, running
 from onehop.node.bus import Bus
 from onehop.wire.batch import pack_tick
-from onehop.wire.codec import decode
 from onehop.wire.journal import WireMessage
+from onehop.wire.spoken import action_in, failed
 from world_server.mailbox import Mailbox, MissionBrokenError
 from world_server.roll_call import RollCall
 
@@ -50,6 +50,7 @@ class RemoteRobots:
         self._robots = {topics.robot_name(i): i for i in robots}
         for name, i in self._robots.items():
             mail.read(name, topics.OUT, partial(self._on_action, i))
+            mail.read(name, topics.FAILED, partial(self._on_failure, i))
         mail.read_stray(self._on_stray)
 
     def step(
@@ -100,9 +101,9 @@ class RemoteRobots:
             self._on_unasked(robot)
             return
         try:
-            action = self._decoded(data)
+            action = action_in(data, self._limits)
         except DecodeError as error:
-            self._refuse(robot, f"put no action: {error}")
+            self._refuse(robot, str(error))
         else:
             if action.incarnation < incarnation and action.tick < self._tick:
                 return  # the last word of the process that was here before
@@ -113,12 +114,12 @@ class RemoteRobots:
                 self._refuse(robot, wrong)
         del self._awaited[name]
 
-    def _decoded(self, data: bytes) -> Action:
-        """Raises DecodeError for anything that is no action."""
-        most = self._limits.action_bytes
-        if len(data) > most:
-            raise DecodeError(f"{len(data)} bytes, and an action has at most {most}")
-        return decode(Action, data)
+    def _on_failure(self, robot: int, reason: bytes) -> None:
+        """A robot says that its program has failed, in place of an action."""
+        if self._awaited.pop(topics.robot_name(robot), None) is None:
+            self._on_unasked(robot)
+        else:
+            self._refuse(robot, failed(reason.decode(errors="replace")))
 
     def _refuse(self, robot: int, why: str) -> None:
         """Take nothing more from a robot: what it says next could be a flood."""

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import RadioRecord, Truth
+from onehop.contracts.messages import Action, RadioRecord, Truth
 
 Column = npt.NDArray[Any]
 """One value a row."""
@@ -113,6 +113,20 @@ def _whole(message: Any) -> Sequence[Any]:
     return (message,)
 
 
+def _of_team(action: Action) -> Sequence[Action]:
+    """Nothing of a robot whose program has no team."""
+    return (action,) if action.status is not None else ()
+
+
+def _values(action: Action) -> Sequence[tuple[str, float]]:
+    return [_ShownValue(*item) for item in action.values.items()]
+
+
+class _ShownValue(NamedTuple):
+    name: str
+    value: float
+
+
 class _Request(NamedTuple):
     robot: int
     destination: int
@@ -164,7 +178,7 @@ TABLES: dict[str, TableSpec] = {
         ),
     ),
     "status": TableSpec(
-        "what a robot says of itself", "out/", _whole,
+        "what a robot says of its team", "out/", _of_team,
         (
             _C("robot", INTEGER, BUS_KEY), _C("incarnation", INTEGER), _C("mode", WORD, "status.mode"),
             _C("epoch", INTEGER, "status.epoch"), _C("leader", INTEGER, "status.leader"),
@@ -175,6 +189,10 @@ TABLES: dict[str, TableSpec] = {
             _C("target_x", REAL, "status.target_x"), _C("target_y", REAL, "status.target_y"),
             _C("v", REAL, "twist.v"), _C("w", REAL, "twist.w"), _C("remaining_distance", REAL),
         ),
+    ),
+    "values": TableSpec(
+        "a number that a program shows", "out/", _values,
+        (_C("robot", INTEGER, BUS_KEY), _C("name", WORD), _C("value", REAL)),
     ),
     "notes": TableSpec(
         "an event that a robot notes", "out/", attrgetter("notes"),

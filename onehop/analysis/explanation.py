@@ -36,9 +36,11 @@ class Since:
 class Explanation:
     """One robot at one moment. left: when and why it left, if it is not there at at_s.
 
-    mode_change: the note of the last change of mode {mode, was, on}, None at the start. next_s: arrival
-    of the last command from its leader, None when there was none. traces: messages to it and from it in
-    the window, in order. status, pose: last row of the tables `status` and `poses` as plain values.
+    Of a robot without a team mode, roster and k_rho are None, and status is empty. values: what its
+    program shows. mode_change: the note of the last change of mode {mode, was, on}, None at the start.
+    next_s: arrival of the last command from its leader, None when there was none. traces: messages to it
+    and from it in the window, in order. status, pose: last row of the tables `status` and `poses` as
+    plain values.
     """
 
     robot: int
@@ -46,11 +48,12 @@ class Explanation:
     at_s: float
     tick: int
     left: dict[str, Any] | None
-    mode: Since
+    mode: Since | None
     mode_change: dict[str, Any] | None
-    roster: Since
-    k_rho: Since
+    roster: Since | None
+    k_rho: Since | None
     status: dict[str, Any]
+    values: dict[str, float]
     pose: dict[str, Any]
     next_s: float | None
     traces: tuple[MessageTrace, ...]
@@ -61,23 +64,31 @@ class Explanation:
 
     def as_json(self) -> dict[str, Any]:
         """Everything as plain values; lost messages have no arrival."""
-        status = {**self.status, "members": list(self.status["members"])}
         return {
             "robot": self.robot,
             "at_s": self.at_s,
             "tick": self.tick,
             "present": self.left is None,
             "left": self.left,
-            "mode": {**asdict(self.mode), "change": self.mode_change},
-            "roster": asdict(self.roster),
-            "k_rho": asdict(self.k_rho),
-            "error": status["error"],
-            "status": status,
+            **self._team_json(),
+            "values": self.values,
             "pose": self.pose,
             "last_next_s": self.next_s,
             "messages": [_message_json(trace) for trace in self.traces],
             "events": list(self.events),
             "faults": list(self.faults),
+        }
+
+    def _team_json(self) -> dict[str, Any]:
+        if self.mode is None or self.roster is None or self.k_rho is None:
+            return dict.fromkeys(("mode", "roster", "k_rho", "error", "status"))
+        status = {**self.status, "members": list(self.status["members"])}
+        return {
+            "mode": {**asdict(self.mode), "change": self.mode_change},
+            "roster": asdict(self.roster),
+            "k_rho": asdict(self.k_rho),
+            "error": status["error"],
+            "status": status,
         }
 
 
@@ -96,12 +107,14 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         raise InputError(
             f"--robot {robot}", "is not in the team", f"one of {', '.join(map(str, log.robots))}"
         )
-    tables = log.tables("status", "notes", robots=[robot], end_s=at_s)
+    tables = log.tables("status", "values", "notes", robots=[robot], end_s=at_s)
     ground = log.tables("poses", "departures", "verdicts", "transmit_requests", end_s=at_s)
-    status = tables["status"]
-    if at_s < 0 or not len(status):
+    status, values = tables["status"], tables["values"]
+    has_team = len(status) > 0
+    acted = status if has_team else _acted(log, robot, at_s)
+    if at_s < 0 or not len(acted):
         raise InputError(f"--at {at_s:g}", "the robot has not acted by then", "a later time [s]")
-    tick, last_s = int(status["tick"][-1]), float(status["time_s"][-1])
+    tick, last_s = int(acted["tick"][-1]), float(acted["time_s"][-1])
     left = _left(ground, robot, tick)
     seen_s = last_s if left else _last_seen_s(ground, robot, last_s)
     if left is None and at_s > seen_s + 2 * log.period_ns / 1e9:
@@ -118,19 +131,27 @@ def explain(log: Log, robot: int, at_s: float, window_s: float = WINDOW_S) -> Ex
         at_s=last_s,
         tick=tick,
         left=left,
-        mode=_since(status, "mode"),
+        mode=_since(status, "mode") if has_team else None,
         mode_change=changes[-1] if changes else None,
-        roster=_roster_since(status),
-        k_rho=_since(status, "k_rho"),
+        roster=_roster_since(status) if has_team else None,
+        k_rho=_since(status, "k_rho") if has_team else None,
         status=_row(status),
+        values=dict(values.where(values["tick"] == tick).rows("name", "value")),
         pose=_row(_until(ground["poses"].of(robot), tick)),
-        next_s=_last_command(own, robot, int(status["leader"][-1])),
+        next_s=_last_command(own, robot, int(status["leader"][-1])) if has_team else None,
         traces=tuple(trace for trace in own if trace.settled_s > last_s - window_s),
         events=_events(tables["notes"], last_s - window_s),
         faults=tuple(_faults(log, robot, seen_s)),
         gains=log.scenario.gains,
         team=log.scenario.team,
     )
+
+
+def _acted(log: Log, robot: int, at_s: float) -> Table:
+    """The ticks in which a robot without a team has acted."""
+    period_s = log.period_ns / 1e9
+    ticks = np.array([tick for tick, _ in log.actions(robot, 0.0, at_s)], dtype=np.int64)
+    return Table({"tick": ticks, "time_s": ticks * period_s})
 
 
 def _until(table: Table, tick: int) -> Table:
@@ -146,7 +167,7 @@ def _last_seen_s(ground: dict[str, Table], robot: int, last_s: float) -> float:
 def _left(ground: dict[str, Table], robot: int, tick: int) -> dict[str, Any] | None:
     gone = [d for d in departures(ground["poses"], ground["departures"]) if d.robot == robot]
     present = ground["poses"].of(robot)["tick"]
-    if not gone or (len(present) and present[-1] > tick):
+    if not gone or (len(present) and present[-1] > tick + 1):  # a robot is fenced for what it lacks
         return None
     return {"at_s": gone[-1].at_s, "why": gone[-1].why}
 

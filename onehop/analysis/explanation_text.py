@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from typing import Any
 
-from onehop.analysis.explanation import Explanation
+from onehop.analysis.explanation import Explanation, Since
 from onehop.analysis.message_traces import MessageTrace
 from onehop.analysis.payloads import summary_of
 from onehop.contracts.messages import DeliveryStatus
@@ -58,19 +58,29 @@ def _last_of(lines: list[str], number: int) -> Iterator[str]:
 
 
 def _state(one: Explanation) -> Iterator[str]:
-    status, roster = one.status, one.roster.value
+    for name, value in one.values.items():
+        yield f"shows    {printable(name)} {value:z.3f}"
+    if one.mode is not None and one.roster is not None:
+        yield from _team_state(one, one.mode, one.roster)
+    elif one.pose:
+        x, y, v, w = (one.pose[key] for key in ("x", "y", "v", "w"))
+        yield f"moves    at ({x:.2f}, {y:.2f}) m with v {v:z.2f} m/s, w {w:z.2f} rad/s; it has no team"
+
+
+def _team_state(one: Explanation, mode: Since, since: Since) -> Iterator[str]:
+    status, roster = one.status, since.value
     change = one.mode_change
     why = ", from the start"
     if change is not None:
         why = f", on {_said(change, 'on')!r}, before that {_said(change, 'was')}"
-    yield f"mode     {one.mode.value} since {one.mode.since_s:.2f} s{why}"
+    yield f"mode     {mode.value} since {mode.since_s:.2f} s{why}"
     members = ids_in_words(roster["members"]) or "nobody"
     whom = "itself" if roster["leader"] == one.robot else f"robot {roster['leader']}"
     yield (
         f"roster   obeys {whom}: epoch {roster['epoch']}, members {members}, {roster['shape']}, "
-        f"since {one.roster.since_s:.2f} s"
+        f"since {since.since_s:.2f} s"
     )
-    yield from _gain(one)
+    yield from _gain(one, roster["leader"])
     if one.pose:
         stands = f"stands at ({one.pose['x']:.2f}, {one.pose['y']:.2f}) m"
         aim = "goal" if roster["leader"] == one.robot else "slot"
@@ -81,9 +91,9 @@ def _state(one: Explanation) -> Iterator[str]:
         yield f"command  v {status['v']:z.2f} m/s, w {status['w']:z.2f} rad/s"
 
 
-def _gain(one: Explanation) -> Iterator[str]:
+def _gain(one: Explanation, leader: int) -> Iterator[str]:
     status, gains = one.status, one.gains
-    if one.roster.value["leader"] == one.robot:
+    if leader == one.robot:
         yield f"k_rho    {status['k_rho']:g} 1/s: a leader follows nobody"
         return
     measured, threshold = status["throughput_bps"], status["threshold_bps"]
@@ -97,7 +107,8 @@ def _gain(one: Explanation) -> Iterator[str]:
         )
     if gains.policy == "constant":
         reason = f"policy constant ({reason})"
-    yield f"k_rho    {status['k_rho']:.2f} 1/s since {one.k_rho.since_s:.2f} s: {reason}"
+    since = "" if one.k_rho is None else f" since {one.k_rho.since_s:.2f} s"
+    yield f"k_rho    {status['k_rho']:.2f} 1/s{since}: {reason}"
     if one.next_s is None:
         yield "leader   never heard a command of this leader"
     else:
@@ -145,8 +156,7 @@ def _broadcast(trace: MessageTrace, copies: list[MessageTrace]) -> str:
     missed = ", ".join(f"{copy.receiver} {copy.status}" for copy in copies if not copy.delivered)
     lost = f", LOST: {missed}" if missed else ""
     return (
-        f"  {trace.offered_s:8.2f} s  to all  {trace.kind:<13} reached {reached}{lost}; "
-        f"{summary_of(trace.message)}"
+        f"  {trace.offered_s:8.2f} s  to all  {trace.kind:<13} reached {reached}{lost}; {_says(trace)}"
     )
 
 
@@ -161,5 +171,9 @@ def _message(trace: MessageTrace, robot: int) -> str:
         outcome = f"LOST, {trace.status}{snr}: {WHY_LOST[DeliveryStatus(trace.status)]}"
     tries = f", attempts {trace.attempts}" if trace.attempts > 1 else ""
     via = f", via {ids_in_words(trace.path[1:-1])}" if len(trace.path) > 2 else ""
-    says = summary_of(trace.message)
-    return f"  {trace.offered_s:8.2f} s  {direction:<7} {trace.kind:<13} {outcome}{tries}{via}; {says}"
+    became = f"{outcome}{tries}{via}; {_says(trace)}"
+    return f"  {trace.offered_s:8.2f} s  {direction:<7} {trace.kind:<13} {became}"
+
+
+def _says(trace: MessageTrace) -> str:
+    return f"{trace.msdu_bytes} bytes" if trace.message is None else summary_of(trace.message)

@@ -62,12 +62,15 @@ def decode_payload(payload: bytes) -> TeamMessage | None:
 
 
 def kind_of(message: TeamMessage | None) -> str:
-    """Name of a team message as the thesis has it: Setup, Next, Narrow, Lost_Follower, Ack, ..."""
+    """Name of a team message as the thesis has it: Setup, Next, Narrow, Lost_Follower, Ack, ...
+
+    "other" is what another program says.
+    """
     if isinstance(message, Command):
         if message.kind is CommandKind.NEXT and message.phase is MissionPhase.SETUP:
             return "Setup"
         return _COMMANDS[message.kind]
-    return "garbled" if message is None else type(message).__name__
+    return "other" if message is None else type(message).__name__
 
 
 def summary_of(message: TeamMessage | None) -> str:

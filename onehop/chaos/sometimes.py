@@ -1,12 +1,12 @@
 """What should happen in some mission of a campaign: what never does has not been tried by it."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from onehop.checking.snapshot import Snapshot
 from onehop.contracts.fault_section import KINDS
 from onehop.contracts.messages import Action, DeliveryStatus, Truth
-from onehop.contracts.team import Mode, Shape
+from onehop.contracts.team import Mode, Shape, Status
 
 _NOTES = {
     "elected": "a robot is elected leader",
@@ -55,16 +55,19 @@ class Sometimes:
     def __init__(self) -> None:
         self.seen: Counter[str] = Counter()
         self._elected: dict[int, int] = {}
-        self._before: dict[int, Action] = {}
+        self._before: dict[int, Status] = {}
 
     def take(self, now: Snapshot) -> None:
         """One more tick."""
         if now.truth is not None:
             self.seen.update(self._of_truth(now, now.truth))
+        statuses = _statuses(now.actions)
         for robot, action in now.actions.items():
-            self.seen.update(self._of_action(now.tick, robot, action))
-        leaders = sum(action.status.leader == robot for robot, action in now.actions.items())
-        self.seen[_LEADERLESS] += bool(now.actions) and not leaders
+            self.seen.update(self._of_notes(now.tick, robot, action))
+        for robot, status in statuses.items():
+            self.seen.update(self._of_status(robot, status))
+        leaders = sum(status.leader == robot for robot, status in statuses.items())
+        self.seen[_LEADERLESS] += bool(statuses) and not leaders
         self.seen[_TWO] += leaders == 2
         self.seen[_THREE] += leaders >= 3
         if now.record is not None:
@@ -73,34 +76,41 @@ class Sometimes:
                     self.seen[_LOST[verdict.status]] += 1
                 elif len(verdict.path) > 2:
                     self.seen[_RELAYED] += 1
-        self._before = now.actions
+        self._before = statuses
 
     def _of_truth(self, now: Snapshot, truth: Truth) -> Iterator[str]:
-        setup = any(action.status.mode is Mode.SETUP for action in self._before.values())
+        setup = any(status.mode is Mode.SETUP for status in self._before.values())
         for fault in truth.faults:
             yield _FAULTS[fault.kind]
             if setup:
                 yield _FAULT_IN_SETUP
         for gone in truth.departures:
-            action = self._before.get(gone.robot)
-            if action is None or action.status.leader != gone.robot:
+            status = self._before.get(gone.robot)
+            if status is None or status.leader != gone.robot:
                 continue
             yield _DIED_LEADING
             if now.tick - self._elected.get(gone.robot, -_SOON_TICKS) < _SOON_TICKS:
                 yield _DIED_ELECTED
-            if action.status.shape is Shape.COLUMN and len(action.status.members) > 2:
+            if status.shape is Shape.COLUMN and len(status.members) > 2:
                 yield _DIED_COLUMN
 
-    def _of_action(self, tick: int, robot: int, action: Action) -> Iterator[str]:
-        status, before = action.status, self._before.get(robot)
-        if before is None or before.status.mode is not status.mode:
+    def _of_status(self, robot: int, status: Status) -> Iterator[str]:
+        before = self._before.get(robot)
+        if before is None or before.mode is not status.mode:
             yield _MODES[status.mode]
-        if before is None or before.status.shape is not status.shape:
+        if before is None or before.shape is not status.shape:
             yield _SHAPES[status.shape]
         if 0.0 <= status.throughput_bps < status.threshold_bps:
             yield _HURRY
+
+    def _of_notes(self, tick: int, robot: int, action: Action) -> Iterator[str]:
         for note in action.notes:
             if note.kind in _NOTES:
                 yield _NOTES[note.kind]
             if note.kind == "elected":
                 self._elected[robot] = tick
+
+
+def _statuses(actions: Mapping[int, Action]) -> dict[int, Status]:
+    """What robots say of their teams, of those that have one."""
+    return {robot: action.status for robot, action in actions.items() if action.status is not None}

@@ -43,6 +43,8 @@ class _Tracks:
         if now.truth is not None:
             self.faults += [(now.tick, fault) for fault in now.truth.faults]
         for robot, action in now.actions.items():
+            if action.status is None:
+                continue
             bands = self.bands.setdefault(robot, [])
             if bands and bands[-1].mode is action.status.mode and bands[-1].last == now.tick - 1:
                 bands[-1].last = now.tick

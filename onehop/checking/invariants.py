@@ -67,3 +67,9 @@ NOT_IN_THESIS: dict[str, str] = {
     ONE_LEADER: "profile thesis has no rule by which two leaders become one",
 }
 """What profile `thesis` does not promise."""
+
+WITHOUT_TEAM: dict[str, str] = dict.fromkeys(
+    (MEDIAN, SHAPE, EPOCHS, ONE_LEADER, ONE_TEAM, RE_ELECTION),
+    "no robot said anything of a team: its program has none",
+)
+"""Why nothing was asked of a team in a mission of other programs."""

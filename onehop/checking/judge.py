@@ -1,6 +1,6 @@
 """Reads a log once, tick by tick, and asks every invariant of every tick; its memory is bounded."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -25,6 +25,7 @@ from onehop.checking.invariants import (
     SHAPE,
     SILENCE,
     UNEXERCISED,
+    WITHOUT_TEAM,
 )
 from onehop.checking.leaders import Leadership
 from onehop.checking.motion import Collisions, Motion
@@ -120,13 +121,17 @@ def judge(log: Log, only: Iterable[str] = (), watchers: Iterable[Watcher] = ()) 
         completeness.finish(summary)
         is_whole = summary is not None and summary["ticks"] == reading.count
         collisions.finish(summary, is_whole)
-    return _report(findings, scenario.team.profile, reading.count)
+    reasons = {**UNEXERCISED, **(NOT_IN_THESIS if scenario.team.profile == "thesis" else {})}
+    if reading.count and not reading.has_team:
+        reasons |= WITHOUT_TEAM
+    return _report(findings, reasons, reading.count)
 
 
 class _Reading:
     """Reads a log as far as it goes. count: ticks that were read. error: why it ended early, if it did.
 
-    The last tick before a tear, or before what cannot be read, is left out if it is not whole.
+    has_team: whether any robot has said anything of a team. The last tick before a tear, or before what
+    cannot be read, is left out if it is not whole.
     """
 
     def __init__(self, log: Log) -> None:
@@ -134,6 +139,7 @@ class _Reading:
         self._team = frozenset(log.bundle.scenario.team.robots)
         self.count = 0
         self.error: str | None = None
+        self.has_team = False
 
     def ticks(self) -> Iterator[tuple[Snapshot, list[WireMessage]]]:
         """Every tick, decoded and as it was written."""
@@ -145,6 +151,7 @@ class _Reading:
                     yield last
                 follows = last is not None and logged.tick == last[0].tick + 1
                 last = snapshot(logged, follows, self._team), logged.messages
+                self.has_team |= any(one.status is not None for one in last[0].actions.values())
         except LogError as error:
             self.error = error.problem
         if last is not None and (last[0].is_whole() or not (self._log.torn or self.error)):
@@ -152,9 +159,8 @@ class _Reading:
             yield last
 
 
-def _report(findings: Findings, profile: str, ticks: int) -> Report:
+def _report(findings: Findings, reasons: Mapping[str, str], ticks: int) -> Report:
     names = [name for name in INVARIANTS if name in findings.wanted]
-    reasons = {**UNEXERCISED, **(NOT_IN_THESIS if profile == "thesis" else {})}
     order = {name: number for number, name in enumerate(names)}
     return Report(
         ticks=ticks,

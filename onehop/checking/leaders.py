@@ -81,7 +81,9 @@ class Leadership:
         before = self._statuses
         self._links.take(now, now.truth)
         self._statuses = {
-            robot: action.status for robot, action in now.actions.items() if robot in now.present
+            robot: action.status
+            for robot, action in now.actions.items()
+            if robot in now.present and action.status is not None
         }
         leaders = [robot for robot, status in self._statuses.items() if status.leader == robot]
         if self._is_team_profile:
@@ -108,7 +110,7 @@ class Leadership:
         }
         linked = np.array(links.since <= tick - self._bound)
         np.fill_diagonal(linked, val=False)
-        if linked.any():
+        if self._statuses and linked.any():
             self._findings.count(ONE_LEADER)
         for number, a in enumerate(leaders):
             for b in leaders[:number]:

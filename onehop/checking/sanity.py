@@ -24,9 +24,10 @@ def impossible(value: TickMessage, team: frozenset[int]) -> str | None:
 
 
 def _wrong_action(action: Action, team: frozenset[int]) -> str | None:
-    members = action.status.members
-    if not members or not team.issuperset(members):
-        return "has members who are not in the team"
+    if action.status is not None:
+        members = action.status.members
+        if not members or not team.issuperset(members):
+            return "has members who are not in the team"
     return None if _are_sound(action.twist.v, action.twist.w) else "commands what is no motion"
 
 

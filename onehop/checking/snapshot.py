@@ -76,6 +76,8 @@ class Snapshot:
         if action is None:
             return self.exhibit(topics.out(robot), "no message")
         status = action.status
+        if status is None:
+            return self.exhibit(topics.out(robot), "nothing of a team")
         return self.exhibit(
             topics.out(robot),
             f"{status.mode.value}, epoch {status.epoch}, leader {status.leader} of "

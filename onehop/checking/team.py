@@ -45,13 +45,15 @@ class Team:
         if now.follows:
             self._memory = {robot: before[robot] for robot in now.stopped if robot in before}
         for robot, action in now.actions.items():
+            if action.status is None:
+                continue
             known = before.get(robot) if now.follows else None
             if known is not None and known.incarnation != action.incarnation:
                 known = None
             orders = self._orders_heard(now, robot)
-            self._judge_median(now, robot, action)
+            self._judge_median(now, robot, action, action.status)
             self._judge_epoch(now, robot, action.status, known, orders)
-            narrow = self._judge_shape(now, robot, action, known, orders)
+            narrow = self._judge_shape(now, robot, action, action.status, known, orders)
             heard = self._has_heard(action.status, known, orders)
             self._memory[robot] = _Memory(action.incarnation, action.status, heard, narrow)
 
@@ -76,8 +78,7 @@ class Team:
 
     # median
 
-    def _judge_median(self, now: Snapshot, robot: int, action: Action) -> None:
-        status = action.status
+    def _judge_median(self, now: Snapshot, robot: int, action: Action, status: Status) -> None:
         if status.mode is not Mode.JOINING:  # who joins has no roster, and stays near any leader
             self._findings.count(MEDIAN)
             leader = Roster(status.epoch, status.members).leader
@@ -100,16 +101,16 @@ class Team:
         now: Snapshot,
         robot: int,
         action: Action,
+        status: Status,
         known: _Memory | None,
         orders: list[tuple[int, Order]],
     ) -> bool | None:
         """Whether the robot leads in column, as far as that can be known."""
-        status = action.status
         self._findings.count(SHAPE)
         size = len(status.members)
         narrow: bool | None = None
         if status.leader == robot:
-            narrow = self._narrow_of_leader(robot, action, known)
+            narrow = self._narrow_of_leader(robot, action, status.members, known)
         else:
             for source, order in orders:
                 if source == status.leader and order.roster == (status.epoch, status.members):
@@ -126,7 +127,9 @@ class Team:
         return status.shape is column if narrow is None else narrow
 
     @staticmethod
-    def _narrow_of_leader(robot: int, action: Action, known: _Memory | None) -> bool | None:
+    def _narrow_of_leader(
+        robot: int, action: Action, members: tuple[int, ...], known: _Memory | None
+    ) -> bool | None:
         """A new leader leads in the open; after that its notes and its commands tell."""
         narrow = known.narrow if known is not None else None
         if known is not None and known.status.leader != robot:
@@ -135,7 +138,7 @@ class Team:
             if note.kind in ("narrow", "wide"):
                 narrow = note.kind == "narrow"
         for order in _orders_given(action):
-            if order.roster.members == action.status.members:
+            if order.roster.members == members:
                 narrow = order.narrow
         return narrow
 

@@ -80,6 +80,10 @@ def run(
     start: Annotated[str | None, Option(metavar="X,Y", help="Where the team starts [m].")] = None,
     goal: Annotated[str | None, Option(metavar="X,Y", help="Where the team goes [m].")] = None,
     settings: Settings = [],  # noqa: B006 - typer needs a list
+    program: Annotated[
+        str | None,
+        Option(metavar="MODULE:CLASS", help="Program of all robots without one of their own."),
+    ] = None,
     out: Annotated[Path | None, Option(help="Folder for log, summary and figure.")] = None,
     record: Annotated[bool, Option("--record/--no-record", help="Write the log.")] = True,
     with_view: Annotated[
@@ -97,7 +101,7 @@ def run(
 
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
-    leave(command.run(scenario, driver.value, settings, seed, *places, *wanted))
+    leave(command.run(scenario, driver.value, settings, seed, *places, *wanted, program))
 
 
 @app.command()

@@ -1,14 +1,18 @@
 """`onehop run --driver inline`: the whole mission in this process, with its log and its summary."""
 
+import sys
 import time
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
 from onehop.contracts.fault_section import fault_in_words
 from onehop.contracts.messages import Action, Carriage, Progress, RobotProgress
+from onehop.contracts.topics import robot_name
 from onehop.drivers import inline
 from onehop.mission.stops import Stopped, StopRequest
+from onehop.programs.host import ProgramError
 from onehop.scenario.bundle import Bundle
 from onehop.wire.journal import Journal, WireMessage
 from onehop.wire.log_writer import LogWriter
@@ -39,7 +43,8 @@ def run_inline(
         watch = _Watch(stop, show, tell)
         started = time.monotonic()
         try:
-            outcome = inline.run(bundle, journal, watch.look)
+            with redirect_stdout(sys.stderr):  # what programs print
+                outcome = inline.run(bundle, journal, watch.look, watch.tell_of_failure)
         except Stopped:
             outcome = watch.world.aborted("stopped by the operator")
         wall_s = time.monotonic() - started
@@ -85,6 +90,9 @@ class _Watch:
         self._stop = stop
         self._show = show
         self._next_show = 0.0
+
+    def tell_of_failure(self, robot: int, failure: ProgramError) -> None:
+        self._tell(f"the program of {robot_name(robot)} failed:\n{failure.account}")
 
     def look(self, world: World, actions: dict[int, Action], _: Carriage) -> None:
         self.world = world

@@ -6,6 +6,7 @@ from typing import Any
 
 from onehop.commands.output import emit_json, say, stdout, table
 from onehop.mission.progress import Display
+from onehop.programs.find import check, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import FIGURE, REMEDY, claimed, explained
@@ -24,8 +25,11 @@ def run(
     record: bool,
     with_view: bool,
     as_json: bool,
+    program: str | None = None,
 ) -> int:
-    """Run one mission; returns the exit status."""
+    """Run one mission; returns the exit status. program: of the team, in place of the scenario's."""
+    if program is not None:
+        settings = [*settings, f"team.program={program}"]
     bundle = scenario_file.load(
         scenario,
         settings,
@@ -34,6 +38,8 @@ def run(
         scenario_file.point(start, "--start"),
         scenario_file.point(goal, "--goal"),
     )
+    search_in(bundle.folder)
+    check(bundle.scenario, str(scenario))
     folder = out or _fresh_folder(bundle)
     with claimed(folder) as claim:
         with Display(bundle.scenario) as display:
@@ -47,7 +53,7 @@ def run(
 
                 arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
                 robots = bundle.scenario.team.robots
-                plan = launcher.LaunchPlan(arguments, robots, folder, claim, record)
+                plan = launcher.LaunchPlan(arguments, robots, folder, claim, record, bundle.folder)
                 summary = launcher.run(plan, display.show, display.tell)
         if as_json:
             emit_json(summary)

@@ -41,14 +41,20 @@ NOTE_VALUES = 8
 NOTE_TEXT = 100
 """Characters of a text in a note; ours are words and short phrases."""
 
+VALUES = 32
+"""Values a tick that a program shows beside its notes."""
+
 _WORD = re.compile(r"[a-z][a-z0-9_]{0,31}")
-"""Kinds of notes, and names of their values: snake_case."""
+"""Kinds of notes, names of their values and of a program's own: snake_case."""
 
 _WHOLE = Range(-(2**63), 2**63 - 1)
 """Whole numbers of a note: tables hold them in 64 bits."""
 
 _TRANSMISSION_BYTES = 80
 """What a transmission takes on the wire beyond its payload, at most [B]."""
+
+_VALUE_BYTES = 50
+"""What a value takes on the wire with its name, at most [B]."""
 
 _STATUS_BYTES = 512
 """The same for an action that has no members, messages or notes."""
@@ -72,6 +78,7 @@ class ActionLimits:
         self.action_bytes = (
             self.messages * (MSDU_BYTES + _TRANSMISSION_BYTES)
             + NOTES * (NOTE_VALUES + 1) * value_bytes
+            + VALUES * _VALUE_BYTES
             + 9 * count
             + _STATUS_BYTES
         )
@@ -96,12 +103,16 @@ class ActionLimits:
         status, wrong = action.status, None
         if not _are_sound_numbers(action):
             return _wrong_number(action)
-        if status.members != self._sound_members or status.leader not in self._leaders:
+        if status is not None and (
+            status.members != self._sound_members or status.leader not in self._leaders
+        ):
             wrong = self._wrong_roster(status)
         if wrong is None and action.outbox:
             wrong = self._wrong_outbox(action.outbox)
         if wrong is None and action.notes:
             wrong = self._wrong_notes(action.notes)
+        if wrong is None and action.values:
+            wrong = _wrong_values(action.values)
         return wrong
 
     def _weight(self, transmission: Transmission) -> int:
@@ -157,8 +168,19 @@ class ActionLimits:
         return few and all(_WHOLE.least <= number <= _WHOLE.most for number in whole)
 
 
+def _wrong_values(values: dict[str, float]) -> str | None:
+    if len(values) > VALUES:
+        return f"{len(values)} values in a tick; {VALUES} may be taken"
+    for name, value in values.items():
+        if not _WORD.fullmatch(name):
+            return "a value whose name is no word"
+        if not -LARGEST <= value <= LARGEST:
+            return f"values.{name} is {value!r}, not a number from {-LARGEST:g} to {LARGEST:g}"
+    return None
+
+
 def _are_sound_numbers(action: Action) -> bool:
-    """Whether every number outside of outbox and notes is in its range; NaN and infinity are in none.
+    """Whether every number of motion and status is in its range; NaN and infinity are in none.
 
     What `_ranges` says, in one expression: it is evaluated for every robot at every tick.
     """
@@ -168,7 +190,14 @@ def _are_sound_numbers(action: Action) -> bool:
         and -most <= twist.w <= most
         and 0.0 <= action.speed <= most
         and 0.0 <= action.remaining_distance <= most
-        and 0 <= status.epoch < LIMIT
+        and (status is None or _is_sound_status(status))
+    )
+
+
+def _is_sound_status(status: Status) -> bool:
+    most = LARGEST
+    return (
+        0 <= status.epoch < LIMIT
         and -1.0 <= status.throughput_bps <= most
         and 0.0 <= status.threshold_bps <= most
         and 0.0 <= status.k_rho <= most
@@ -185,6 +214,8 @@ def _ranges(action: Action) -> Iterator[tuple[str, float, Range]]:
     yield "twist.w", action.twist.w, signed
     yield "speed", action.speed, positive
     yield "remaining_distance", action.remaining_distance, positive
+    if status is None:
+        return
     yield "status.epoch", status.epoch, Range(0, LIMIT - 1)
     yield "status.throughput_bps", status.throughput_bps, Range(-1.0, LARGEST)
     yield "status.threshold_bps", status.threshold_bps, positive

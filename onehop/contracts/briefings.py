@@ -1,5 +1,8 @@
 """What each process is told before it starts: a robot learns neither the map nor the others' poses."""
 
+from dataclasses import replace
+from typing import Any
+
 from onehop.contracts.arrays import FloatArray
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.scenario import Scenario
@@ -14,12 +17,23 @@ from onehop.contracts.values import Wire
 
 
 class Briefing(Wire, frozen=True):
-    """All that a robot is told before it starts (thesis 3.3.2): never the map, never others' poses."""
+    """All that a robot is told before it starts (thesis 3.3.2): never the map, never others' poses.
+
+    incarnation: 0 for the first process of this robot, one more for each restart. seed: of the mission.
+    robots: ids of all that take part. period_ns: length of a tick. silence_s: wall-clock time after
+    which a process that says nothing is given up [s]. program, parameters: of this robot; on the wire a
+    table, for the program itself an instance of its `Parameters`. team: ids are those of the robots
+    with the same program; the rest of it, gains and planner are what the built-in team goes by.
+    """
 
     robot: int
     incarnation: int
     seed: int
+    robots: tuple[int, ...]
     period_ns: int
+    silence_s: float
+    program: str
+    parameters: Any
     goal: GoalSection
     team: TeamSection
     body: RobotSection
@@ -39,27 +53,43 @@ class RadioBriefing(Wire, frozen=True):
 
 
 class LogBriefing(Wire, frozen=True):
-    """What goes into a log before its first tick. driver: what the log calls this way of running."""
+    """What goes into a log before its first tick.
+
+    driver: what the log calls this way of running. programs: the folder of the robots' own programs.
+    """
 
     driver: str
     scenario_json: str
     files: tuple[tuple[str, bytes], ...]
+    programs: str
 
 
 def robot_briefing(scenario: Scenario, robot: int, incarnation: int) -> Briefing:
     """What robot `robot` may know of a scenario."""
+    program, parameters = scenario.program_of(robot)
     return Briefing(
         robot=robot,
         incarnation=incarnation,
         seed=scenario.seed,
+        robots=scenario.team.robots,
         period_ns=scenario.clock.period_ns,
+        silence_s=scenario.clock.silence_s,
+        program=program,
+        parameters=parameters,
         goal=scenario.goal,
-        team=scenario.team,
+        team=_team_of(scenario, program),
         body=scenario.robot,
         gains=scenario.gains,
         planner=scenario.planner,
         radio=scenario.radio,
     )
+
+
+def _team_of(scenario: Scenario, program: str) -> TeamSection:
+    """The team's section as a robot of this program sees it: others do not speak its language."""
+    team = scenario.team
+    alike = tuple(robot for robot in team.robots if scenario.program_of(robot)[0] == program)
+    return team if alike == team.robots else replace(team, ids=alike)
 
 
 def radio_briefing(scenario: Scenario, walls: FloatArray) -> RadioBriefing:

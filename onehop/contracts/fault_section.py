@@ -9,8 +9,9 @@ from dataclasses import dataclass, fields, replace
 from typing import Annotated, Any, Literal, get_args
 
 from onehop.contracts.problems import Problem
+from onehop.contracts.program_section import RobotId
 from onehop.contracts.ranges import Range
-from onehop.contracts.sections import Coordinate, RobotId, Seconds
+from onehop.contracts.sections import Coordinate, Seconds
 
 FaultKind = Literal[
     "kill", "stop", "continue", "restart", "hold", "kidnap", "blind", "slow", "cut", "corrupt", "jam",

@@ -11,6 +11,7 @@ from onehop.contracts.arrays import Ranges
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.team import Status
+from onehop.contracts.units import NANOSECONDS
 from onehop.contracts.values import Value, Wire
 
 BROADCAST = 0
@@ -41,6 +42,8 @@ class Reception(Value, frozen=True):
     source: robot that sent it. service_start_ns: instant at which the source's link layer began to
     serve it. arrival_ns: instant of its last bit here. hops, attempts: over the whole path.
     snr_db, bit_error_rate: of the last hop. msdu_bytes: size on the air that was paid for.
+    throughput_bps: of these bytes over all of their way, repetitions and route discovery included
+    (thesis eq. 3.15) [bit/s].
     """
 
     source: int
@@ -52,6 +55,11 @@ class Reception(Value, frozen=True):
     snr_db: float
     bit_error_rate: float
     msdu_bytes: int
+
+    @property
+    def throughput_bps(self) -> float:
+        duration_ns = max(1, self.arrival_ns - self.service_start_ns)
+        return 8.0 * self.msdu_bytes * NANOSECONDS / duration_ns
 
 
 class Inbox(Wire, frozen=True):
@@ -106,10 +114,12 @@ class Note(Value, frozen=True):
     data: dict[str, NoteValue]
 
 
-class Action(Wire, frozen=True):
+class Action(Wire, frozen=True, omit_defaults=True):
     """Everything that robot i does at tick k (key out/<i>).
 
     speed [m/s], remaining_distance [m]: what the NIC may know (routing, thesis eq. p_r).
+    status: what it says of its team; None from a program that has none. values: numbers by name that
+    it shows; where there are none the key is left out on the wire.
     """
 
     tick: int
@@ -118,8 +128,9 @@ class Action(Wire, frozen=True):
     outbox: tuple[Transmission, ...]
     speed: float
     remaining_distance: float
-    status: Status
+    status: Status | None
     notes: tuple[Note, ...]
+    values: dict[str, float] = {}  # noqa: RUF012 - a struct copies its defaults
 
 
 class Presence(Value, frozen=True):
@@ -373,7 +384,7 @@ class RobotProgress(Value, frozen=True):
 
     robot: int
     speed: float
-    status: Status
+    status: Status | None
 
 
 class Progress(Wire, frozen=True):

@@ -8,10 +8,11 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.problems import Problem
+from onehop.contracts.program_section import RobotEntry
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.ranges import Range, out_of_range
 from onehop.contracts.sections import (
@@ -38,8 +39,9 @@ PATH_END = 0.5
 class Scenario:
     """One mission. Sections as above; seed fixes everything random in the run.
 
-    profile: "team", the defaults of the sections, or "thesis", which fills in the thesis's own where a
-    file leaves them out (onehop/scenario/profile.py). Nothing but reading a file looks at it.
+    robots: those that have something of their own. profile: "team", the defaults of the sections, or
+    "thesis", which fills in the thesis's own where a file leaves them out (onehop/scenario/profile.py).
+    Nothing but reading a file looks at it.
     """
 
     name: str
@@ -54,7 +56,18 @@ class Scenario:
     planner: PlannerSection = field(default_factory=PlannerSection)
     radio: RadioSection = field(default_factory=RadioSection)
     clock: ClockSection = field(default_factory=ClockSection)
+    robots: tuple[RobotEntry, ...] = ()
     faults: tuple[FaultSection, ...] = ()
+
+    def program_of(self, robot: int) -> tuple[str, dict[str, Any]]:
+        """The program that drives a robot, and the parameters that it is given."""
+        team = self.team
+        own = next((one for one in self.robots if one.id == robot), None)
+        if own is None:
+            return team.program, team.parameters
+        if own.program:
+            return own.program, own.parameters
+        return team.program, {**team.parameters, **own.parameters}
 
     def problems(self) -> Iterator[Problem]:
         """Everything that keeps this mission from being run: ranges, sections, then across them."""
@@ -83,6 +96,7 @@ class Scenario:
             )
         if self.planner.kind == "path":
             yield from self._path_problems()
+        yield from self._robot_problems()
         for number, fault in enumerate(self.faults):
             for problem in fault.problems():
                 yield problem._replace(key=f"faults[{number}].{problem.key}")
@@ -93,6 +107,20 @@ class Scenario:
                     f"robot {strangers[0]} is not in the team",
                     f"ids of the team: {', '.join(map(str, robots))}",
                 )
+
+    def _robot_problems(self) -> Iterator[Problem]:
+        team, seen = self.team.robots, set[int]()
+        for number, one in enumerate(self.robots):
+            if one.id not in team:
+                ids = ", ".join(map(str, team))
+                yield Problem(
+                    f"robots[{number}].id", f"robot {one.id} is not in the team", f"one of {ids}"
+                )
+            if one.id in seen:
+                yield Problem(f"robots[{number}].id", f"robot {one.id} stands twice", "every id once")
+            seen.add(one.id)
+            for problem in one.problems():
+                yield problem._replace(key=f"robots[{number}].{problem.key}")
 
     def _path_problems(self) -> Iterator[Problem]:
         """A leader has to see the path from where it starts, and has arrived at its end."""

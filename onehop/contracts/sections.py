@@ -1,10 +1,16 @@
 """The sections of a scenario but for radio and faults: values, defaults, units, source, conditions."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import Annotated, Literal
+from dataclasses import dataclass, field
+from typing import Annotated, Any, Literal
 
 from onehop.contracts.problems import Problem
+from onehop.contracts.program_section import (
+    BUILT_IN,
+    RobotId,
+    parameter_problems,
+    program_problems,
+)
 from onehop.contracts.ranges import Range
 
 Coordinate = Annotated[float, Range(-1e7, 1e7)]
@@ -12,7 +18,6 @@ Coordinate = Annotated[float, Range(-1e7, 1e7)]
 
 Point = tuple[Coordinate, Coordinate]
 
-RobotId = Annotated[int, Range(1, 2**31 - 1)]
 Seconds = Annotated[float, Range(0.0, 1e6)]
 """A time of the mission [s]: up to eleven days."""
 
@@ -133,7 +138,10 @@ class GainsSection:
 
 @dataclass(frozen=True, slots=True)
 class TeamSection:
-    """Who takes part, and the rules of the team (thesis 3.3).
+    """Who takes part, driven by which program, and the rules of the built-in team (thesis 3.3).
+
+    program: "package.module:Class" (docs/own-robot.md). parameters: of that program, as its own class
+    names them; the built-in team goes by the keys below and by [gains] and [planner].
 
     ids: robots, or empty for 1..size. spacing: s of the slot table [m]. next_period: T [s].
     lost_after: missing acknowledgements in a row until a follower is given up.
@@ -149,6 +157,8 @@ class TeamSection:
     leader never waits (thesis 3.8.2).
     """
 
+    program: str = BUILT_IN
+    parameters: dict[str, Any] = field(default_factory=dict)
     size: Annotated[int, Range(1, MOST_ROBOTS)] = 6
     ids: tuple[RobotId, ...] = ()
     spacing: Annotated[float, Range(0.01, 1e3)] = 4.0
@@ -181,6 +191,8 @@ class TeamSection:
                 f"{self.target_timeout} s is less than next_period",
                 f"at least {self.next_period} s, or 0 for leader_timeout alone",
             )
+        yield from program_problems(self.program)
+        yield from parameter_problems(self.parameters)
         duplicates = sorted({i for i in self.ids if self.ids.count(i) > 1})
         if duplicates:
             yield Problem("ids", f"robot {duplicates[0]} stands twice", "every id once")

@@ -69,7 +69,7 @@ RECORDED = "recorded"
 """Recorder to world: the last tick that is in the file."""
 
 FAILED = "failed"
-"""Recorder to world: it cannot write any more, and why."""
+"""Recorder to world: it cannot write any more, and why; robot to world: the same of its program."""
 
 END = "end"
 """World to all: the mission is over, and how."""

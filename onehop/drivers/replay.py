@@ -20,6 +20,8 @@ from onehop.contracts.messages import Action, Inbox, Observation, Truth, percept
 from onehop.contracts.scenario import Scenario
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
+from onehop.programs.find import check, search_in
+from onehop.programs.host import Host, ProgramError
 from onehop.wire.audit import Audit
 from onehop.wire.codec import UNPACK_REFUSALS, decode, encode
 from onehop.wire.difference import first_difference
@@ -28,7 +30,6 @@ from onehop.wire.log_reader import LogFile, LoggedTick, forged
 from onehop.wire.logged import M, value_of
 from onehop.wire.selection import Selected
 from radio_proxy.core.radio import Radio
-from robot_agent.core.robot import Robot
 from world_server.core.world import World
 
 
@@ -89,7 +90,9 @@ def replay(
     scenario: run the robots with this one instead of the log's own (what-if). Raises LogError.
     """
     original = log.bundle.scenario
+    search_in(log.bundle.folder)
     chosen = original.team.robots if robots is None else robots
+    check(scenario or original, str(log.path), chosen)
     players: dict[str, Player] = {
         topics.out(i): _RobotPlayer(scenario or original, i).play for i in chosen
     }
@@ -220,7 +223,7 @@ class _RobotPlayer:
         self._scenario = scenario
         self._id = robot
         self._incarnation = -1
-        self._robot: Robot | None = None
+        self._host: Host | None = None
 
     def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         i = self._id
@@ -228,10 +231,14 @@ class _RobotPlayer:
         inbox = _value(Inbox, tick, topics.rx(i))
         if observation is None or inbox is None:
             return
-        if self._robot is None or self._incarnation != observation.incarnation:
+        if self._host is None or self._incarnation != observation.incarnation:
             self._incarnation = observation.incarnation
-            self._robot = Robot(robot_briefing(self._scenario, i, self._incarnation))
-        yield topics.out(i), encode(self._robot.step(percept(observation, inbox)))
+            self._host = Host(robot_briefing(self._scenario, i, self._incarnation))
+        try:
+            said = self._host.step(percept(observation, inbox))
+        except ProgramError:  # nothing more is heard of it, as in the mission
+            return
+        yield topics.out(i), said
 
 
 def _radio(scenario: Scenario, walls: WallMap) -> Player:

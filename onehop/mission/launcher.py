@@ -42,6 +42,7 @@ class LaunchPlan:
     """What to run. world_arguments: scenario and options, as `python -m world_server` takes them.
 
     out: the folder of its output, held by the descriptor `claim` (output_folder.claimed).
+    programs: where robots look for programs that are not installed.
     """
 
     world_arguments: tuple[str, ...]
@@ -49,6 +50,7 @@ class LaunchPlan:
     out: Path
     claim: int
     record: bool
+    programs: str = ""
 
 
 def run(
@@ -94,7 +96,8 @@ class _Launch:
             mission = f"onehop-{uuid.uuid4().hex[:8]}"
             endpoint = free_endpoint()
             words = self._plan.out / "stderr"
-            with ProcessGroup(endpoint, mission, self._plan.robots, words) as group:
+            plan = self._plan
+            with ProcessGroup(endpoint, mission, plan.robots, words, plan.programs) as group:
                 ending = self._run_once(group, mission, endpoint)
             if ending is not None:
                 return self._summary_of(ending, group)

@@ -17,7 +17,13 @@ from onehop.contracts.errors import InputError
 from onehop.contracts.messages import Death
 from onehop.contracts.printable import printable
 from onehop.node.bus import make_credentials
-from onehop.node.startup import CREDENTIALS_VARIABLE, PASSWORD_VARIABLE, WORLD_IS_GONE
+from onehop.node.startup import (
+    CREDENTIALS_VARIABLE,
+    PASSWORD_VARIABLE,
+    PROGRAM_FAILED,
+    WORLD_IS_GONE,
+)
+from onehop.programs.host import ACCOUNT_LINES
 from onehop.wire.summary import Process
 
 GRACE_S = 3.0
@@ -66,14 +72,18 @@ class ProcessGroup:
     """All children of one mission. Leaving the context ends every one of them.
 
     Each gets its own password through its environment, a lifeline that ends it when this process dies,
-    and a file in the folder `words` for what it says on stderr. If nobody said anything the folder goes.
-    Raises InputError when this system does not let so many processes work together.
+    and a file in the folder `words` for what it says. If nobody said anything the folder goes.
+    programs: where robots look for programs that are not installed. Raises InputError when this system
+    does not let so many processes work together.
     """
 
-    def __init__(self, endpoint: str, mission: str, robots: Sequence[int], words: Path) -> None:
+    def __init__(
+        self, endpoint: str, mission: str, robots: Sequence[int], words: Path, programs: str = ""
+    ) -> None:
         self._endpoint = endpoint
         self._mission = mission
         self._words = words
+        self._programs = programs
         others = (topics.RADIO, topics.RECORDER, topics.OPERATOR, topics.INJECTOR)
         names = [*others, *map(topics.robot_name, robots)]
         require_descriptors(len(names))
@@ -122,6 +132,7 @@ class ProcessGroup:
 
     def start_robot(self, robot: int) -> None:
         arguments = ["--id", str(robot), "--connect", self._endpoint]
+        arguments += ["--programs", self._programs] if self._programs else []
         self._start(topics.robot_name(robot), "robot_agent", arguments)
 
     def _start(self, name: str, module: str, arguments: Sequence[str], *inherited: int) -> None:
@@ -136,7 +147,7 @@ class ProcessGroup:
             process = subprocess.Popen(
                 [*command, "--lifeline", str(self._lifeline), *arguments],
                 stdin=subprocess.DEVNULL,
-                stdout=subprocess.DEVNULL,
+                stdout=stderr,
                 stderr=stderr,
                 pass_fds=(self._lifeline, *inherited),
                 env=environment,
@@ -171,8 +182,13 @@ class ProcessGroup:
         return deaths
 
     def account(self, name: str) -> str:
-        """How a child that has ended did so, with its last words, in one line."""
+        """How a child that has ended did so, with its last words, in one line.
+
+        Of a robot whose program has failed it is all that it said, which is a block of lines.
+        """
         status = self._children[name].process.returncode
+        if status == PROGRAM_FAILED:
+            return f"the program of {name} failed:\n{self._last_block(name)}"
         how = _signal_name(-status) if status < 0 else f"exit status {status}"
         account, words = f"the {name} process died ({how})", self.last_words(name)
         if not words:
@@ -186,6 +202,14 @@ class ProcessGroup:
         except OSError:
             return ""
         return printable(lines[-1].strip()) if lines else ""
+
+    def _last_block(self, name: str) -> str:
+        """The last lines that a child said, as many as a program's account has."""
+        try:
+            lines = self._file(name).read_text(errors="replace").rstrip().splitlines()
+        except OSError:
+            return ""
+        return "\n".join(printable(line) for line in lines[-ACCOUNT_LINES - 1 :])
 
     def _file(self, name: str) -> Path:
         return self._words / f"{name}.txt"

@@ -59,10 +59,13 @@ class Display:
         first_s, first_tick = self._started or (now, progress.tick)
         rate = (progress.tick - first_tick) / (now - first_s) if now > first_s else 0.0
         factor = rate * self._scenario.clock.period_ms / 1000.0
-        leaders = [line for line in progress.robots if line.status.leader == line.robot]
+        leaders = [
+            (line, line.status)
+            for line in progress.robots
+            if line.status is not None and line.status.leader == line.robot
+        ]
         words = [f"{self._scenario.name}  {sim_s:7.1f} s  {rate:6.0f} ticks/s  {factor:5.1f}x real time"]
-        for line in leaders:
-            status = line.status
+        for line, status in leaders:
             words.append(
                 f"leader {line.robot} ({status.shape.value}, {len(status.members)} robots, "
                 f"{status.error:.0f} m to go, {line.speed:.1f} m/s)"
@@ -74,14 +77,17 @@ class Display:
         for column in ("robot", "mode", "speed m/s", "to slot m", "throughput Mb/s", "k_rho"):
             links.add_column(column, justify="left" if column == "mode" else "right")
         for line in progress.robots:
-            status = line.status
+            status, speed = line.status, f"{line.speed:.2f}"
+            if status is None:
+                links.add_row(str(line.robot), "", speed, "", "", "")
+                continue
             leads = status.leader == line.robot
             throughput = "" if leads else f"{max(0.0, status.throughput_bps) / 1e6:.3f}"
             weak = not leads and status.throughput_bps < status.threshold_bps
             links.add_row(
                 str(line.robot),
                 status.mode.value,
-                f"{line.speed:.2f}",
+                speed,
                 "" if leads else f"{status.error:.1f}",
                 Text(throughput, style="bold red" if weak else ""),
                 "" if leads else f"{status.k_rho:.1f}",

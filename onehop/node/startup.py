@@ -29,6 +29,9 @@ BRIEFING_TIMEOUT_S = 30.0
 WORLD_IS_GONE = 3
 """Exit status of a process that ends because the world has gone."""
 
+PROGRAM_FAILED = 4
+"""Exit status of a robot whose program has failed; its traceback is on stderr."""
+
 
 def arguments(program: str, purpose: str) -> argparse.ArgumentParser:
     """The options that all processes of a mission share."""

@@ -46,10 +46,14 @@ def _default(one: "Field[Any]") -> Any:
 
 
 def _value(value: Any) -> str:
+    if is_dataclass(value):
+        return f"{{{', '.join(_changed(value, is_profiled=False))}}}"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{_value(str(key))} = {_value(one)}' for key, one in value.items())}}}"
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
-    if isinstance(value, tuple):
+    if isinstance(value, tuple | list):
         return f"[{', '.join(map(_value, value))}]"
     return repr(value)

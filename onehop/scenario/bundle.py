@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.scenario import Scenario
@@ -12,23 +12,27 @@ from onehop.scenario.structure import structure
 
 @dataclass(frozen=True, slots=True)
 class Bundle:
-    """Everything that a mission is made from: a scenario and the bytes of its map's files by name."""
+    """Everything that a mission is made from: a scenario and the bytes of its map's files by name.
+
+    folder: where its programs are looked for that are not installed (onehop/programs); empty for none.
+    """
 
     scenario: Scenario
     files: dict[str, bytes]
+    folder: str = field(default="", compare=False)
 
     def scenario_json(self) -> str:
         """The whole scenario with every default written out; `bundle_from_json` reads it back."""
         return json.dumps(asdict(self.scenario), indent=1)
 
 
-def bundle_from_json(text: str, files: Mapping[str, bytes], origin: str) -> Bundle:
+def bundle_from_json(text: str, files: Mapping[str, bytes], origin: str, folder: str = "") -> Bundle:
     """The mission that a log carries as attachments. Raises ScenarioError."""
     try:
         table = json.loads(text)
     except ValueError as error:
         raise ScenarioError(origin, f"not JSON ({error})", "an attachment written by onehop") from None
-    return Bundle(structure(table, origin), dict(files))
+    return Bundle(structure(table, origin), dict(files), folder)
 
 
 def changed(scenario: Scenario, settings: Iterable[str]) -> Scenario:

@@ -52,7 +52,8 @@ def load(
         apply_change(table, setting)
     table.setdefault("name", path.stem)
     scenario = structure(table, str(path))
-    return Bundle(scenario, _read_map_files(scenario.map.file, directory, str(path)))
+    files = _read_map_files(scenario.map.file, directory, str(path))
+    return Bundle(scenario, files, str(path.parent.absolute()))
 
 
 @contextmanager

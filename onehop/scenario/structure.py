@@ -2,7 +2,7 @@
 
 import difflib
 from dataclasses import fields
-from typing import Any, Literal, get_args, get_origin
+from typing import Any, Literal, TypeVar, get_args, get_origin
 
 import cattrs
 from cattrs import AttributeValidationNote, IterableValidationNote
@@ -10,6 +10,8 @@ from cattrs import AttributeValidationNote, IterableValidationNote
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.scenario import Scenario
 from onehop.scenario.profile import with_profile
+
+T = TypeVar("T")
 
 
 class _MismatchError(ValueError):
@@ -55,21 +57,26 @@ def _make_converter() -> cattrs.Converter:
 _CONVERTER = _make_converter()
 
 
+def structured(table: dict[str, Any], kind: type[T], origin: str, key: str = "") -> T:
+    """The dataclass that a table is. origin, key: what to call the table. Raises ScenarioError."""
+    try:
+        return _CONVERTER.structure(table, kind)
+    except cattrs.BaseValidationError as error:
+        raise _first_mistake(error, origin, table, key) from None
+
+
 def structure(table: dict[str, Any], origin: str) -> Scenario:
     """The scenario of a table. origin: what to call the table. Raises ScenarioError, naming the key."""
-    try:
-        scenario = _CONVERTER.structure(with_profile(table), Scenario)
-    except cattrs.BaseValidationError as error:
-        raise _first_mistake(error, origin, table) from None
+    scenario = structured(with_profile(table), Scenario, origin)
     problem = next(scenario.problems(), None)
     if problem is not None:
         raise ScenarioError(f"{origin}: {problem.key}", problem.what, problem.remedy)
     return scenario
 
 
-def _first_mistake(error: BaseException, origin: str, table: Any) -> ScenarioError:
+def _first_mistake(error: BaseException, origin: str, table: Any, key: str) -> ScenarioError:
     """The first leaf of cattrs' tree of errors, with its key path."""
-    path: list[str] = []
+    path = [f".{key}"] if key else []
     value = table
     while isinstance(error, cattrs.BaseValidationError):
         kind = error.cl

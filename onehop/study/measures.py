@@ -35,6 +35,8 @@ class Course:
         leaders = []
         for robot, action in actions.items():
             status = action.status
+            if status is None:
+                continue
             if status.leader == robot:
                 leaders.append(robot)
             elif status.leader != NOBODY and status.mode not in _AT_REST:

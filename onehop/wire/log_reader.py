@@ -21,7 +21,7 @@ from onehop.scenario.bundle import Bundle, bundle_from_json
 from onehop.wire.contents import damaged, read_contents
 from onehop.wire.coverage import coverage_flaws
 from onehop.wire.journal import Digest, WireMessage, canonical_rank, keys_of
-from onehop.wire.log_writer import MAP_ATTACHMENT, OUTCOME, SCENARIO_ATTACHMENT
+from onehop.wire.log_writer import MAP_ATTACHMENT, OUTCOME, PROGRAMS, SCENARIO_ATTACHMENT
 from onehop.wire.selection import WireMessages
 from onehop.wire.summary import decode_summary
 
@@ -86,7 +86,8 @@ class LogFile:
         }
         origin = f"{self.path}: {SCENARIO_ATTACHMENT}"
         try:
-            return bundle_from_json(attachments[SCENARIO_ATTACHMENT].decode(), files, origin)
+            text, folder = attachments[SCENARIO_ATTACHMENT].decode(), self.metadata.get(PROGRAMS, "")
+            return bundle_from_json(text, files, origin, folder)
         except (UnicodeDecodeError, RecursionError) as error:
             raise LogError(origin, f"not JSON ({error})", "an attachment written by onehop") from None
 

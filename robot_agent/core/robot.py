@@ -9,10 +9,11 @@ from onehop.contracts.arrays import Ranges
 from onehop.contracts.briefings import Briefing
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.ideal_link import THESIS_THRESHOLD_BPS, propagation_us, threshold_bps
-from onehop.contracts.messages import Action, Note, Percept
+from onehop.contracts.messages import Note, Percept
 from onehop.contracts.randomness import generator
 from onehop.contracts.team import Mode, Status
 from onehop.contracts.units import NANOSECONDS
+from onehop.robot import Action, Program
 from robot_agent.core.motion.detour import SlotTask
 from robot_agent.core.motion.gains import make_policy
 from robot_agent.core.motion.leader import PathfinderMaker, TeamView
@@ -37,8 +38,8 @@ def required_throughput_bps(briefing: Briefing, distance: float = 0.0) -> float:
     return threshold_bps(briefing.radio.rate_mbps, briefing.team.next_msdu_bytes, delay_us)
 
 
-class Robot:
-    """One incarnation of one robot."""
+class Robot(Program):
+    """One incarnation of one robot of the built-in team."""
 
     def __init__(self, briefing: Briefing, make_pathfinder: PathfinderMaker = make_pathfinder) -> None:
         self._briefing = briefing
@@ -79,14 +80,11 @@ class Robot:
             told = self._told_pose(protocol, pose) if leads else pose
             protocol.speak(now_ns, told, self._motion.trail.points)
         return Action(
-            tick=percept.tick,
-            incarnation=self._briefing.incarnation,
             twist=twist,
             outbox=protocol.take_outbox(),
-            speed=abs(twist.v),
+            notes=(*self._notes, *protocol.take_notes()),
             remaining_distance=self._remaining,
             status=self._status(protocol),
-            notes=(*self._notes, *protocol.take_notes()),
         )
 
     @property

@@ -39,11 +39,12 @@ from onehop.contracts.messages import (
 )  # fmt: skip
 from onehop.contracts.values import Wire
 from onehop.maps.map_file import load_map
+from onehop.programs.host import Host
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import decode, encode
 from onehop.wire.log_reader import LogFile
+from onehop.wire.spoken import action_in
 from radio_proxy.core.radio import Radio
-from robot_agent.core.robot import Robot
 from robot_agent.core.team import team_messages
 from tests.fuzz.damage import damaged
 from tests.onehop.log_forms import ticks_of, with_extreme
@@ -136,7 +137,7 @@ class Messages:
         limits = ActionLimits(scenario.team.robots)
         scan = np.full(scenario.robot.laser_beams, 5.0, dtype=np.float32)
         for me in (1, 3):
-            robot = Robot(robot_briefing(scenario, me, 0))
+            robot = Host(robot_briefing(scenario, me, 0))
             for tick in range(12):
                 now = tick * scenario.clock.period_ns
                 heard = Reception(
@@ -144,8 +145,7 @@ class Messages:
                 )
                 inbox = (heard,) if tick % 3 else ()
                 percept = Percept(tick, now, Pose(8.0, 8.0, 0.0), Twist(0.0, 0.0), scan, inbox)
-                action = robot.step(percept)
-                encode(action)
+                action = action_in(robot.step(percept), limits)
                 why = limits.breach(action, tick, 0)
                 assert why is None, f"robot {me} does what it may not: {why}"
         team_messages.decode(payload)
@@ -206,7 +206,7 @@ def _others(bundle: Bundle, action: Action) -> Iterator[Wire]:
     scenario = bundle.scenario
     yield robot_briefing(scenario, 1, 0)
     yield radio_briefing(scenario, load_map(scenario.map, bundle.files).segments)
-    yield LogBriefing("processes", "{}", (("m.pgm", b"P5"),))
+    yield LogBriefing("processes", "{}", (("m.pgm", b"P5"),), "")
     yield Death("robot-1", 0, "killed by SIGKILL")
     yield End(Outcome("arrived", "all are there", (1, 2), (), (), 30, 1.5, 0), 29, 1.0)
     yield Progress(3, 150_000_000, (RobotProgress(1, 1.0, action.status),))

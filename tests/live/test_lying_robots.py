@@ -139,15 +139,15 @@ import sys
 words = sys.orig_argv
 if "robot_agent" in words and words[words.index("--id") + 1] == "3":
     from onehop.contracts.messages import Action
-    from robot_agent import process
+    from onehop.programs import host
 
-    honest = process.encode
+    honest = host.encode
 
     def lie(action):
         data = honest(action)
         return data if action.tick < 20 else {lie}
 
-    process.encode = lie
+    host.encode = lie
 """
 
 

@@ -21,7 +21,7 @@ class EventDetector:
 
     def on_action(self, robot: int, action: Action) -> Iterator[MissionEvent]:
         """What a robot's action tells for the first time."""
-        leads = action.status.leader == robot
+        leads = action.status is not None and action.status.leader == robot
         if leads and robot not in self._leading:
             yield MissionEvent("leader elected", robot)
         (self._leading.add if leads else self._leading.discard)(robot)

@@ -3,6 +3,9 @@
 Arrived: a leader stands at the goal and everyone who is left stands still. Failed: nobody is left,
 everyone has stopped elsewhere, or the time is up. Whoever obeys a leader at the goal and is within the
 reach of its formation has arrived; the rest is lost, and the referee says since when and why.
+
+A robot whose program says nothing of a team is judged by where it is, alone: it has arrived when it is
+within the goal's tolerance, and within the room that as many robots as there are need around it.
 """
 
 import math
@@ -17,10 +20,14 @@ from onehop.contracts.sections import beside_goal
 from onehop.contracts.team import Mode, Shape, Status, loss_in_words
 
 STILL = 0.02
-"""Speed below which a robot stands still [m/s]."""
+"""Speed below which a robot stands still [m/s]; of one without a team its turning too [rad/s]."""
 
 _REST_S = 2.0
 """Standing still this long counts as having stopped [s]; a Next period of the thesis (3.3.2)."""
+
+_PATIENCE_S = 30.0
+"""When a robot without a team takes part, so long nobody moves before nobody will any more [s]: such a
+robot does not say that it has stopped, and may wait for something."""
 
 _MARGIN = 0.1
 """What a robot may stand beyond the goal's tolerance, for the last tick of its braking [m]."""
@@ -29,14 +36,15 @@ _MARGIN = 0.1
 class TickSummary(NamedTuple):
     """What the referee looks at after a tick.
 
-    statuses: the last word of those who have said any. waiting: robots held or stopped by a fault that
-    will end by itself, whose standing still means nothing. collisions: contacts so far.
+    statuses: the last word of those who have said any; None of a robot without a team. waiting: robots
+    held or stopped by a fault that will end by itself, whose standing still means nothing. collisions:
+    contacts so far.
     """
 
     ticks: int
     time_ns: int
     present: tuple[Presence, ...]
-    statuses: Mapping[int, Status]
+    statuses: Mapping[int, Status | None]
     waiting: frozenset[int]
     collisions: int
 
@@ -44,6 +52,10 @@ class TickSummary(NamedTuple):
         """What a robot says it is doing, if it has said anything."""
         status = self.statuses.get(robot)
         return None if status is None else status.mode
+
+    def is_teamless(self, robot: int) -> bool:
+        """Whether a robot has spoken, and not of a team."""
+        return robot in self.statuses and self.statuses[robot] is None
 
 
 class Referee:
@@ -58,6 +70,7 @@ class Referee:
         self._beside = beside_goal(scenario.goal, scenario.robot, scenario.planner)
         self._spacing = scenario.team.spacing
         self._robots = scenario.team.robots
+        self._room = room_at_goal(scenario)
         self._limit_ns = round(scenario.clock.limit_s * 1e9)
         self._moved_ns = 0
         self._leadership = LeadershipHistory()
@@ -117,6 +130,8 @@ class Referee:
             robot = one.robot
             if not -STILL < one.twist.v < STILL or robot in now.waiting:
                 self._moved_ns = now.time_ns
+            elif now.is_teamless(robot) and not -STILL < one.twist.w < STILL:
+                self._moved_ns = now.time_ns  # it may look around for its way
             status = now.statuses.get(robot)
             if status is not None:
                 self._leadership.on_status(
@@ -139,11 +154,16 @@ class Referee:
             return "arrived", self._arrival(now)
         if stopped and rested:
             return "failed", self._stop_reason(now)
+        if now.time_ns - self._moved_ns >= _PATIENCE_S * 1e9 and any(
+            now.is_teamless(one.robot) for one in now.present
+        ):
+            return "failed", f"nobody has moved for {_PATIENCE_S:g} s"
         return None
 
     def _arrival(self, now: TickSummary) -> str:
         leaders = ", ".join(str(one.robot) for one in self._leaders_at_goal(now))
-        return f"robot {leaders} at the goal with {len(self._arrived(now))} of {len(self._robots)}"
+        count = f"{len(self._arrived(now))} of {len(self._robots)}"
+        return f"robot {leaders} at the goal with {count}" if leaders else f"{count} at the goal"
 
     def _stop_reason(self, now: TickSummary) -> str:
         """Why nobody drives any more, by the last notes of those who lead."""
@@ -168,8 +188,15 @@ class Referee:
         return self._from_goal(leader.pose) <= reach + _MARGIN
 
     def _arrived(self, now: TickSummary) -> tuple[int, ...]:
-        """Ids of those who obey a leader at the goal, are on its roster and within its formation."""
-        arrived: list[int] = []
+        """Ids of those who obey a leader at the goal, are on its roster and within its formation.
+
+        And of those at the goal who have no team.
+        """
+        arrived = [
+            one.robot
+            for one in now.present
+            if now.is_teamless(one.robot) and self._from_goal(one.pose) <= self._room
+        ]
         for front in self._leaders_at_goal(now):
             leader = front.robot
             term = self._leadership.acting[leader]
@@ -185,6 +212,8 @@ class Referee:
     def _loss(self, robot: int, now: TickSummary) -> Lost:
         if robot in self._departed:
             return self._departed[robot]
+        if now.is_teamless(robot):
+            return Lost(robot=robot, at_s=now.time_ns / 1e9, why="did not arrive")
         leaders = [one.robot for one in self._leaders_at_goal(now)]
         leaders = leaders or [term.leader for term in self._leadership.terms[-1:]]
         dropped = self._dropped(robot, leaders[0]) if leaders else None
@@ -213,6 +242,16 @@ class Referee:
             if by in term.members and after in between:
                 return f"given up by robot {by}{loss_in_words(reason)}"
         return f"dropped from the roster of robot {term.leader}"
+
+
+def room_at_goal(scenario: Scenario) -> float:
+    """Distance from the goal within which a robot without a team has arrived [m].
+
+    n discs as wide as the planner's zone need, around the first one, a disc whose radius grows with the
+    root of their number.
+    """
+    others = len(scenario.team.robots) - 1
+    return scenario.goal.tolerance + 2.0 * scenario.planner.inflation * math.sqrt(others) + _MARGIN
 
 
 def _extent(term: LeadershipTerm, spacing: float) -> float:

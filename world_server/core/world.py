@@ -67,7 +67,7 @@ class World:
         self._referee = Referee(scenario)
         self._incarnation = dict.fromkeys(self._robots, 0)
         self._present = dict.fromkeys(self._robots, True)
-        self._statuses: dict[int, Status] = {}
+        self._statuses: dict[int, Status | None] = {}
         self._transmit_requests: dict[int, TransmitRequest] = {}
         self._departures: list[Departure] = []
         self._contacts: tuple[Contact, ...] = ()

@@ -11,6 +11,7 @@ from onehop.analysis.report.mode_chart import mode_chart
 from onehop.analysis.report.radio_chart import radio_chart
 from onehop.analysis.report.report_data import ReportData
 from onehop.analysis.report.sequence_chart import MAX_CHARTS, sequence_chart
+from onehop.analysis.report.values_chart import values_chart
 from onehop.analysis.trajectory import figure_of
 
 
@@ -50,17 +51,28 @@ def _pictures(report: ReportData, folder: Path) -> Iterator[Picture]:
             "the same leader.",
             save(sequence_chart(report, before, after), folder, f"election-{number}"),
         )
+    if len(report.tables["values"]):
+        yield Picture(
+            "What the programs show",
+            "Numbers that robots say of themselves, by name, each robot in its own colour.",
+            save(values_chart(report), folder, "values"),
+        )
+    if len(report.tables["status"]):
+        yield _followers(report, folder)
     yield Picture(
+        "The radio",
+        "Left: messages that did not arrive, by receiver and delivery status. Right: what was handed to "
+        "the radio, and what routing added.",
+        save(radio_chart(report), folder, "radio"),
+    )
+
+
+def _followers(report: ReportData, folder: Path) -> Picture:
+    return Picture(
         "Each follower",
         "A robot whose throughput falls below the threshold raises its gain k_rho and hurries, because "
         "it is about to lose its leader. Dashed lines mark robots that left, dotted ones a new leader. "
         "Two bit error rates: the modulation's own, dotted, decides which messages are lost; the "
         "thesis's (eq. 3.25), solid, is only drawn.",
         save(follower_chart(report), folder, "followers"),
-    )
-    yield Picture(
-        "The radio",
-        "Left: messages that did not arrive, by receiver and delivery status. Right: what was handed to "
-        "the radio, and what routing added.",
-        save(radio_chart(report), folder, "radio"),
     )

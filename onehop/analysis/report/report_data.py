@@ -19,8 +19,8 @@ from onehop.contracts.messages import LeadershipTerm
 from onehop.wire.audit import audit
 
 _TABLES = (
-    "poses", "status", "notes", "verdicts", "transmit_requests", "control", "contacts", "departures",
-    "cuts", "jams", "corruptions", "impaired", "faults",
+    "poses", "status", "values", "notes", "verdicts", "transmit_requests", "control", "contacts",
+    "departures", "cuts", "jams", "corruptions", "impaired", "faults",
 )  # fmt: skip
 
 

@@ -42,6 +42,9 @@ FARTHEST = 1e9
 MOST_EVENTS = 100
 """Notes of one robot and tick that are shown: a team has a few."""
 
+MOST_VALUES = 32
+"""Values of a robot that are shown; the world takes no more."""
+
 _LEVELS = {
     "lost_leader": TextLog.WARNING,
     "lost_follower": TextLog.WARNING,
@@ -169,7 +172,12 @@ class ViewerChannels:
     ) -> None:
         links = []
         for robot, action in sorted(actions.items()):
+            if action.values:
+                shown = scene.values(stamp, dict(list(action.values.items())[:MOST_VALUES]))
+                self._put(f"/{robot_name(robot)}/values", tick, shown)
             status = action.status
+            if status is None:
+                continue
             leader = poses.get(status.leader)
             if leader is None or status.leader == robot:
                 continue

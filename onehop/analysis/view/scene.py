@@ -1,10 +1,10 @@
-"""Viewer messages: coordinate frames, poses, scans, clouds of points, scenes, links, events.
+"""Viewer messages: coordinate frames, poses, scans, clouds of points, scenes, links, values, events.
 
 Frames: `map`, and `robot-<i>/base_link` with x forward, y left, z up; SI units, radians, quaternions.
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -19,8 +19,10 @@ from onehop.analysis.view.schemas import (
     PointCloud,
     PoseInFrame,
     SceneUpdate,
+    Values,
 )
 from onehop.contracts.geometry import Pose
+from onehop.contracts.printable import printable
 from onehop.contracts.topics import robot_name
 
 MAP = "map"
@@ -138,6 +140,15 @@ def link(stamp_ns: int, **numbers: float) -> Any:
     """One robot's link; numbers: LINK_FIELDS."""
     message = Link(**numbers)
     message.timestamp.FromNanoseconds(stamp_ns)
+    return message
+
+
+def values(stamp_ns: int, shown: Mapping[str, float]) -> Any:
+    """What a program shows of itself, by name."""
+    message = Values()
+    message.timestamp.FromNanoseconds(stamp_ns)
+    for name, value in shown.items():
+        message.values.add(name=printable(name), value=value)
     return message
 
 

@@ -20,7 +20,7 @@ from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import BROADCAST, Note, Reception, Transmission
 from onehop.contracts.team import LossReason, Mode
-from onehop.contracts.units import NANOSECONDS, nanoseconds
+from onehop.contracts.units import nanoseconds
 from robot_agent.core.team.election import ACK_MSDU_BYTES, Election
 from robot_agent.core.team.events import NextMeasured, NextMissed, TeamEvent
 from robot_agent.core.team.leader_view import Points
@@ -193,9 +193,7 @@ class TeamProtocol:
         leader.lane = command.lane
         leader.on_next(now_ns, command.pose, command.trail)
         state.obey(command.phase, command.narrow, leader.lane)
-        duration = max(1, reception.arrival_ns - reception.service_start_ns)
-        throughput_bps = 8.0 * reception.msdu_bytes * NANOSECONDS / duration
-        state.events.append(NextMeasured(throughput_bps))
+        state.events.append(NextMeasured(reception.throughput_bps))
         ack = Ack(state.roster.epoch, command.sequence, in_position, pose)
         self._outbox.send(reception.source, ack, ACK_MSDU_BYTES)
 

@@ -11,6 +11,7 @@ import pytest
 
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.fault_section import FaultSection
+from onehop.contracts.program_section import RobotEntry
 from onehop.contracts.ranges import Range, out_of_range
 from onehop.contracts.scenario import Scenario
 from onehop.scenario import scenario_file
@@ -53,7 +54,8 @@ def _numbers(kind: Any, key: str) -> Iterator[tuple[str, Range]]:
 
 
 FAULT = dict(numbers(FaultSection, "faults."))
-KEYS = dict(numbers(Scenario, "")) | FAULT
+ENTRY = dict(numbers(RobotEntry, "robots."))
+KEYS = dict(numbers(Scenario, "")) | FAULT | ENTRY
 
 
 def read(folder: Path, key: str, value: str) -> None:
@@ -62,6 +64,8 @@ def read(folder: Path, key: str, value: str) -> None:
     if key in FAULT:
         fault = {"kind": "'jam'", "at_s": "1", "radius": "1", key.removeprefix("faults."): value}
         setting = f"faults=[{{{', '.join(f'{name}={text}' for name, text in fault.items())}}}]"
+    if key in ENTRY:
+        setting = f"robots=[{{{key.removeprefix('robots.')}={value}}}]"
     path = folder / "small.toml"
     path.write_text(MISSION)
     scenario_file.load(path, [setting])

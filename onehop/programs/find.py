@@ -1,0 +1,104 @@
+"""A program by the name that a scenario gives it, and its parameters checked by its own dataclass."""
+
+import importlib
+import os
+import sys
+import traceback
+from collections.abc import Iterable
+from dataclasses import is_dataclass
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any
+
+from onehop.contracts.errors import InputError, ScenarioError
+from onehop.contracts.printable import printable
+from onehop.contracts.problems import Problem
+from onehop.contracts.ranges import out_of_range
+from onehop.contracts.scenario import Scenario
+from onehop.robot import Program
+from onehop.scenario.structure import structured
+
+
+def search_in(folder: str) -> None:
+    """Look for programs in a folder too, and in the current one, before what is installed."""
+    for place in (os.getcwd(), folder):
+        if place and place not in sys.path:
+            sys.path.insert(0, place)
+
+
+GROUP = "onehop.programs"
+"""Entry points by which an installed package offers programs under names of their own."""
+
+
+def installed() -> list[EntryPoint]:
+    """Programs that packages offer, by name."""
+    return sorted(entry_points(group=GROUP), key=lambda one: (one.name, one.value))
+
+
+def find(name: str, where: str = "program") -> type[Program]:
+    """The class of a program. Raises InputError. where: what to call its key.
+
+    name: "package.module:Class", or the name under which an installed package offers it.
+    """
+    remedy = '"package.module:Class", installed or in the folder of the scenario'
+    value = name
+    if ":" not in name:
+        value = next((one.value for one in installed() if one.name == name), "")
+        if not value:
+            names = ", ".join(dict.fromkeys(one.name for one in installed())) or "none"
+            raise InputError(where, f"{name!r} is offered by no package", f"{remedy}, or of {names}")
+    module_name, _, class_name = value.partition(":")
+    try:
+        module = importlib.import_module(module_name)
+    except ModuleNotFoundError as error:
+        raise InputError(where, f"{name!r}: {error}", remedy) from None
+    except (Exception, SystemExit) as error:
+        raise InputError(where, f"{name!r} cannot be imported: {_last_line(error)}", "mend it") from None
+    found = getattr(module, class_name, None)
+    if not (isinstance(found, type) and issubclass(found, Program)):
+        raise InputError(where, f"{name!r} is no onehop.robot.Program", remedy)
+    return found
+
+
+def parameters_of(program: type[Program], table: dict[str, Any], origin: str, key: str) -> Any:
+    """What a program's `Parameters` make of a table. Raises InputError. origin, key: what to call it."""
+    kind = program.Parameters
+    if not is_dataclass(kind):
+        name = f"{program.__module__}:{program.__qualname__}"
+        raise InputError(
+            f"{origin}: {key}", f"Parameters of {name} is no dataclass", "a frozen dataclass"
+        )
+    values = structured(table, kind, origin, key)
+    problems: Iterable[Problem] = out_of_range(values)
+    if hasattr(values, "problems"):
+        problems = (*problems, *values.problems())
+    for problem in problems:
+        raise ScenarioError(f"{origin}: {key}.{problem.key}", problem.what, problem.remedy)
+    return values
+
+
+def check(scenario: Scenario, origin: str, robots: Iterable[int] | None = None) -> None:
+    """See that the programs of robots, by default all, are there and take their parameters.
+
+    origin: what to call the scenario. Raises InputError.
+    """
+    seen: list[tuple[str, dict[str, Any]]] = []
+    for robot in scenario.team.robots if robots is None else robots:
+        wanted = name, table = scenario.program_of(robot)
+        if wanted in seen:
+            continue
+        seen.append(wanted)
+        number = next((n for n, one in enumerate(scenario.robots) if one.id == robot), None)
+        own = number is not None and scenario.robots[number].program == name
+        where = f"{origin}: robots[{number}]" if own else f"{origin}: team"
+        program = find(name, f"{where}.program")
+        key = "team.parameters" if number is None else f"robots[{number}].parameters"
+        parameters_of(program, table, origin, key)
+
+
+def _last_line(error: BaseException) -> str:
+    """What went wrong in a module, and in which line."""
+    frames = traceback.extract_tb(error.__traceback__)
+    place = f" ({os.path.basename(frames[-1].filename)}:{frames[-1].lineno})" if frames else ""
+    return (
+        printable("".join(traceback.format_exception_only(error)).strip().splitlines()[-1], 200) + place
+    )
