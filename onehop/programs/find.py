@@ -12,6 +12,7 @@ from typing import Any
 from onehop.contracts.errors import InputError, ScenarioError
 from onehop.contracts.printable import printable
 from onehop.contracts.problems import Problem
+from onehop.contracts.program_section import BUILT_IN
 from onehop.contracts.ranges import out_of_range
 from onehop.contracts.scenario import Scenario
 from onehop.robot import Program
@@ -81,7 +82,7 @@ def check(scenario: Scenario, origin: str, robots: Iterable[int] | None = None) 
 
     origin: what to call the scenario. Raises InputError.
     """
-    seen: list[tuple[str, dict[str, Any]]] = []
+    seen: list[tuple[str, dict[str, Any]]] = [(BUILT_IN, {})]  # its robots load it, and nobody else
     for robot in scenario.team.robots if robots is None else robots:
         wanted = name, table = scenario.program_of(robot)
         if wanted in seen:
