@@ -2,6 +2,12 @@
 
 import signal
 
+from hypothesis import settings
+
+settings.register_profile("untimed", settings.default, deadline=None)
+settings.load_profile("untimed")
+"""No test is timed: how long an example takes says how busy the machine is."""
+
 
 def pytest_configure() -> None:
     """Let child processes hear signals that the tests themselves are to ignore.
