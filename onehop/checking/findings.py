@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 KEPT = 20
-"""Violations of one invariant that are kept; the rest is counted."""
+"""Violations of one invariant that are kept for people; the rest is counted."""
 
 
 class Exhibit(NamedTuple):
@@ -29,13 +29,14 @@ class Violation:
 
 @dataclass(slots=True)
 class Findings:
-    """Collects what the checks find. wanted: invariants that are asked.
+    """Collects what the checks find. wanted: invariants that are asked. kept: violations of each.
 
     checked: how often each was judged. broken: how many violations each has. violations: the first of
     each, in the order in which they were found.
     """
 
     wanted: frozenset[str]
+    kept: int = KEPT
     checked: Counter[str] = field(default_factory=Counter)
     broken: Counter[str] = field(default_factory=Counter)
     violations: list[Violation] = field(default_factory=list)
@@ -52,7 +53,7 @@ class Findings:
         if invariant not in self.wanted:
             return
         self.broken[invariant] += 1
-        if self.broken[invariant] <= KEPT:
+        if self.broken[invariant] <= self.kept:
             found = Violation(invariant, tick, tuple(sorted(robots)), what, evidence)
             self.violations.append(found)
 

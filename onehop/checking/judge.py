@@ -7,7 +7,7 @@ from typing import Any, Protocol
 from onehop.checking.completeness import Completeness, DigestCheck
 from onehop.checking.fault_air import FaultyAir
 from onehop.checking.fault_bit import FaultBit
-from onehop.checking.findings import Findings, Violation
+from onehop.checking.findings import KEPT, Findings, Violation
 from onehop.checking.invariants import (
     COMPLETE,
     EPOCHS,
@@ -81,14 +81,17 @@ class Log(Protocol):
         """Its messages, in canonical order. Raises LogError."""
 
 
-def judge(log: Log, only: Iterable[str] = (), watchers: Iterable[Watcher] = ()) -> Report:
+def judge(
+    log: Log, only: Iterable[str] = (), watchers: Iterable[Watcher] = (), kept: int = KEPT
+) -> Report:
     """Test the invariants of a log, all or those named. A torn one is judged as far as it goes.
 
-    watchers: see every tick that is judged, after its invariants.
+    watchers: see every tick that is judged, after its invariants. kept: violations of each invariant
+    that are reported; the rest is counted.
     """
     scenario, summary = log.bundle.scenario, log.summary
     wanted = frozenset(only) or frozenset(INVARIANTS)
-    findings = Findings(wanted)
+    findings = Findings(wanted, kept)
     period_ns, robots = scenario.clock.period_ns, scenario.team.robots
     completeness = Completeness(findings, period_ns)
     digest = DigestCheck(findings)
