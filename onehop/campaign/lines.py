@@ -7,24 +7,13 @@ killed program has left half written is dropped.
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, Protocol, Self
+from typing import Any, Self
 
 from onehop.contracts.errors import InputError
 from onehop.contracts.printable import printable
 from onehop.wire.output_folder import explained
 
 Row = dict[str, Any]
-
-
-class Listener(Protocol):
-    """Is told of a campaign's missions as they end."""
-
-    def begin(self, before: int) -> None:
-        """Missions are tried from now on; so many of those that are wanted were before."""
-
-    def show(self, row: Row) -> None:
-        """One more mission is done."""
-
 
 REMEDY = "a file in a folder that can be written"
 

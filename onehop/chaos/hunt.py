@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from onehop import __version__
-from onehop.campaign.lines import Lines, Listener, Row
+from onehop.campaign.lines import Lines, Row
+from onehop.campaign.listener import Listener
 from onehop.campaign.process_mission import write_scenario
 from onehop.campaign.workers import Crash, Done, Run
 from onehop.chaos.order import MissionOrder, Repeat, ShrinkOrder, shrink_failure, try_mission

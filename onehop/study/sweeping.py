@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import Any
 
 from onehop import __version__
-from onehop.campaign.lines import Lines, Listener, Row
+from onehop.campaign.lines import Lines, Row
+from onehop.campaign.listener import Listener
 from onehop.campaign.process_mission import self_contained
 from onehop.campaign.workers import Crash, Run, workers
 from onehop.contracts.randomness import generator
