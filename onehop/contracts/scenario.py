@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.problems import Problem
-from onehop.contracts.program_section import RobotEntry
+from onehop.contracts.program_section import BUILT_IN, RobotEntry
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.ranges import Range, out_of_range
 from onehop.contracts.sections import (
@@ -39,6 +39,7 @@ PATH_END = 0.5
 class Scenario:
     """One mission. Sections as above; seed fixes everything random in the run.
 
+    programs: the folder of its robots' programs, seen from the file's own; empty for the file's own.
     robots: those that have something of their own. profile: "team", the defaults of the sections, or
     "thesis", which fills in the thesis's own where a file leaves them out (onehop/scenario/profile.py).
     Nothing but reading a file looks at it.
@@ -47,6 +48,7 @@ class Scenario:
     name: str
     goal: GoalSection
     map: MapSection
+    programs: str = ""
     start: StartSection = field(default_factory=StartSection)
     seed: Annotated[int, Range(0, 2**63 - 1)] = 1
     profile: Literal["team", "thesis"] = "team"
@@ -68,6 +70,10 @@ class Scenario:
         if own.program:
             return own.program, own.parameters
         return team.program, {**team.parameters, **own.parameters}
+
+    def has_own_programs(self) -> bool:
+        """Whether anybody is driven by another program than the built-in team."""
+        return any(self.program_of(robot)[0] != BUILT_IN for robot in self.team.robots)
 
     def problems(self) -> Iterator[Problem]:
         """Everything that keeps this mission from being run: ranges, sections, then across them."""
