@@ -87,10 +87,7 @@ def main() -> None:
     bundle = scenario_file.load(options.scenario)
     with claimed(options.folder) as claim:
         arguments = launcher.world_arguments(options.scenario, (), None, None, None, None)
-        robots = bundle.scenario.team.robots
-        plan = launcher.LaunchPlan(
-            arguments, robots, options.folder, claim, record=True, programs=bundle.folder
-        )
+        plan = launcher.plan(bundle, arguments, options.folder, claim, record=True)
         print(json.dumps(launcher.run(plan, lambda _: None)))
 
 

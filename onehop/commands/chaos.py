@@ -16,7 +16,7 @@ from onehop.commands.output import emit_json, stdout, table
 from onehop.commands.progress import ProgressLine
 from onehop.contracts.errors import InputError
 from onehop.mission.stops import Stopped
-from onehop.programs.find import check, search_in
+from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import explained, held
@@ -83,6 +83,7 @@ def _loaded(path: Path, settings: Sequence[str] = ()) -> Bundle:
     bundle = scenario_file.load(path, settings)
     search_in(bundle.folder)
     check(bundle.scenario, str(path))
+    require_programs(bundle.scenario, str(path))
     return self_contained(bundle, str(path))
 
 

@@ -71,9 +71,15 @@ class Scenario:
             return own.program, own.parameters
         return team.program, {**team.parameters, **own.parameters}
 
+    @property
+    def commands(self) -> dict[int, tuple[str, ...]]:
+        """Of the robots that are processes of somebody else's making: what starts them."""
+        return {one.id: one.command for one in self.robots if one.command}
+
     def has_own_programs(self) -> bool:
         """Whether anybody is driven by another program than the built-in team."""
-        return any(self.program_of(robot)[0] != BUILT_IN for robot in self.team.robots)
+        programs = {self.program_of(robot)[0] for robot in self.team.robots}
+        return bool(self.commands) or programs != {BUILT_IN}
 
     def problems(self) -> Iterator[Problem]:
         """Everything that keeps this mission from being run: ranges, sections, then across them."""
