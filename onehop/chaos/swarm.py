@@ -86,7 +86,12 @@ def draw_mission(base: Bundle, seed: int, budget: bool) -> Bundle:
         ),
     )
     faults = draw_faults(seed, team.robots, places, ways, until_s, budget)
-    return Bundle(dataclasses.replace(drawn, clock=clock, faults=faults), files)
+    own = tuple(one for one in drawn.robots if one.id in team.robots)
+    return dataclasses.replace(
+        base,
+        scenario=dataclasses.replace(drawn, clock=clock, faults=faults, robots=own),
+        files=files,
+    )
 
 
 def _team(random: np.random.Generator, own: TeamSection) -> TeamSection:

@@ -35,14 +35,18 @@ class RobotEntry:
     """What one robot has of its own.
 
     program: empty for that of the team. parameters: with a program of its own all that it is given;
-    without one in place of those of the team that have the same names.
+    without one in place of those of the team that have the same names. command: starts a process that
+    speaks as this robot in place of ours, in any language (docs/wire.md); a program and its words.
     """
 
     id: RobotId
     program: str = ""
     parameters: dict[str, Any] = field(default_factory=dict)
+    command: tuple[str, ...] = ()
 
     def problems(self) -> Iterator[Problem]:
+        if self.command and not (self.command[0] and all("\0" not in word for word in self.command)):
+            yield Problem("command", "names no program", 'a program and its words, ["./my_robot", "-v"]')
         if self.program:
             yield from program_problems(self.program)
         yield from parameter_problems(self.parameters)

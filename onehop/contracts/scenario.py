@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.problems import Problem
-from onehop.contracts.program_section import RobotEntry
+from onehop.contracts.program_section import BUILT_IN, RobotEntry
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.ranges import Range, out_of_range
 from onehop.contracts.sections import (
@@ -39,6 +39,7 @@ PATH_END = 0.5
 class Scenario:
     """One mission. Sections as above; seed fixes everything random in the run.
 
+    programs: the folder of its robots' programs, seen from the file's own; empty for the file's own.
     robots: those that have something of their own. profile: "team", the defaults of the sections, or
     "thesis", which fills in the thesis's own where a file leaves them out (onehop/scenario/profile.py).
     Nothing but reading a file looks at it.
@@ -47,6 +48,7 @@ class Scenario:
     name: str
     goal: GoalSection
     map: MapSection
+    programs: str = ""
     start: StartSection = field(default_factory=StartSection)
     seed: Annotated[int, Range(0, 2**63 - 1)] = 1
     profile: Literal["team", "thesis"] = "team"
@@ -68,6 +70,16 @@ class Scenario:
         if own.program:
             return own.program, own.parameters
         return team.program, {**team.parameters, **own.parameters}
+
+    @property
+    def commands(self) -> dict[int, tuple[str, ...]]:
+        """Of the robots that are processes of somebody else's making: what starts them."""
+        return {one.id: one.command for one in self.robots if one.command}
+
+    def has_own_programs(self) -> bool:
+        """Whether anybody is driven by another program than the built-in team."""
+        programs = {self.program_of(robot)[0] for robot in self.team.robots}
+        return bool(self.commands) or programs != {BUILT_IN}
 
     def problems(self) -> Iterator[Problem]:
         """Everything that keeps this mission from being run: ranges, sections, then across them."""

@@ -8,7 +8,7 @@ from onehop.contracts.briefings import radio_briefing, robot_briefing
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import Action, Carriage, Outcome, percept, running
 from onehop.maps.map_file import load_map
-from onehop.programs.find import search_in
+from onehop.programs.find import require_programs, search_in
 from onehop.programs.host import Host, ProgramError
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
@@ -29,9 +29,10 @@ def run(
     """Run a mission to its outcome.
 
     watch is called after every tick with its actions and with what the radio did in it, tell with each
-    robot whose program fails.
+    robot whose program fails. Raises ScenarioError for what cannot be run here.
     """
     scenario = bundle.scenario
+    require_programs(scenario, scenario.name)
     search_in(bundle.folder)
     walls = load_map(scenario.map, bundle.files)
     world = World(scenario, walls)

@@ -80,10 +80,13 @@ def parameters_of(program: type[Program], table: dict[str, Any], origin: str, ke
 def check(scenario: Scenario, origin: str, robots: Iterable[int] | None = None) -> None:
     """See that the programs of robots, by default all, are there and take their parameters.
 
-    origin: what to call the scenario. Raises InputError.
+    Those of robots with a command are its own business. origin: what to call the scenario. Raises
+    InputError.
     """
     seen: list[tuple[str, dict[str, Any]]] = [(BUILT_IN, {})]  # its robots load it, and nobody else
     for robot in scenario.team.robots if robots is None else robots:
+        if robot in scenario.commands:
+            continue
         wanted = name, table = scenario.program_of(robot)
         if wanted in seen:
             continue
@@ -94,6 +97,15 @@ def check(scenario: Scenario, origin: str, robots: Iterable[int] | None = None) 
         program = find(name, f"{where}.program")
         key = "team.parameters" if number is None else f"robots[{number}].parameters"
         parameters_of(program, table, origin, key)
+
+
+def require_programs(scenario: Scenario, origin: str) -> None:
+    """See that every robot can be run in this process. origin: see `check`. Raises ScenarioError."""
+    for number, one in enumerate(scenario.robots):
+        if one.command:
+            what = f"robot {one.id} is a process of its own, and has no program to run in this one"
+            remedy = "onehop run with --driver processes, or --set robots=[] for the team's program"
+            raise ScenarioError(f"{origin}: robots[{number}].command", what, remedy)
 
 
 def _last_line(error: BaseException) -> str:

@@ -53,7 +53,7 @@ def load(
     table.setdefault("name", path.stem)
     scenario = structure(table, str(path))
     files = _read_map_files(scenario.map.file, directory, str(path))
-    return Bundle(scenario, files, str(path.parent.absolute()))
+    return Bundle(scenario, files, str((path.parent / scenario.programs).absolute()))
 
 
 @contextmanager

@@ -73,7 +73,8 @@ def read(folder: Path, key: str, value: str) -> None:
 
 def test_the_walk_finds_the_numbers_of_every_section() -> None:
     with_numbers = {key.partition(".")[0] for key in KEYS}
-    assert with_numbers == {field.name for field in dataclasses.fields(Scenario)} - {"name", "profile"}
+    texts = {"name", "profile", "programs"}
+    assert with_numbers == {field.name for field in dataclasses.fields(Scenario)} - texts
 
 
 @pytest.mark.parametrize("value", NUMBERS, ids=lambda value: value[:6] + f"({len(value)})")
