@@ -30,7 +30,7 @@ from onehop.maps.walls import WallMap
 from world_server.core.contacts import ContactDetector
 from world_server.core.faults import Faults
 from world_server.core.kidnapping import landing, require_free_targets
-from world_server.core.laser import Laser
+from world_server.core.laser import Lasers
 from world_server.core.late_actions import LateActions
 from world_server.core.mission_events import EventDetector
 from world_server.core.motion import Motion
@@ -51,16 +51,17 @@ class World:
     def __init__(self, scenario: Scenario, walls: WallMap) -> None:
         self._robots = scenario.team.robots
         self._row = {robot: row for row, robot in enumerate(self._robots)}
-        self._body = scenario.robot
+        bodies = scenario.bodies
+        self._motors = [(body.max_speed, body.max_turn_rate) for body in bodies]
         self._period_ns = scenario.clock.period_ns
         self._poses = start_poses(scenario, walls)
         self._walls, self._inflation = walls, scenario.planner.inflation
         require_free_targets(scenario.faults, walls, self._inflation)
         self._judge = Judge(self._robots, walls, self._inflation)
         self._twists = np.zeros((len(self._robots), 2))
-        self._laser = Laser(walls, scenario.robot)
-        self._motion = Motion(walls, scenario.robot, self._period_ns)
-        self._contact_detector = ContactDetector(self._robots, self._motion, scenario.robot.radius)
+        self._lasers = Lasers(walls, bodies)
+        self._motion = Motion(walls, bodies, self._period_ns)
+        self._contact_detector = ContactDetector(self._robots, self._motion)
         self._faults = Faults(scenario.faults, self._robots)
         self._late_actions = LateActions()
         self._events = EventDetector()
@@ -111,11 +112,11 @@ class World:
         """What each robot that runs at this tick sees now, by id, ids ascending."""
         truth = self.truth()
         tick, time_ns, observers = truth.tick, truth.time_ns, running(truth)
-        looking = np.array([self._row[one.robot] for one in observers], dtype=np.int32)
-        scans = self._laser.scans(self._poses, looking)
-        if truth.blind:
-            scans[[one.robot in truth.blind for one in observers]] = math.inf
-        scans.flags.writeable = False
+        scans = self._lasers.scans(self._poses, [self._row[one.robot] for one in observers])
+        for one, scan in zip(observers, scans, strict=True):
+            if one.robot in truth.blind:
+                scan[:] = math.inf
+            scan.flags.writeable = False
         return {
             one.robot: Observation(tick, time_ns, one.incarnation, one.pose, one.twist, scan)
             for one, scan in zip(observers, scans, strict=True)
@@ -188,9 +189,10 @@ class World:
     def _kidnap(self, robot: int, fault: FaultSection) -> None:
         """Put the body of a robot elsewhere, at rest."""
         row = self._row[robot]
-        bodies = self._poses[np.arange(len(self._poses)) != row, :2]
-        apart = 2.0 * self._body.radius
-        self._poses[row] = landing(fault, self._walls, self._inflation, bodies, apart)
+        others = np.arange(len(self._poses)) != row
+        radii = self._motion.radii
+        bodies = self._poses[others, :2], radii[others]
+        self._poses[row] = landing(fault, self._walls, self._inflation, float(radii[row]), *bodies)
         self._twists[row] = 0.0
         self._present_now = None
 
@@ -230,15 +232,15 @@ class World:
             for event in self._events.on_action(robot, action):
                 self._faults.on_event(event, self.time_ns + self._period_ns)
             if robot not in held:
-                driven[row] = self._driven(robot, action.twist)
+                driven[row] = self._driven(robot, row, action.twist)
         self._twists[:] = driven
 
-    def _driven(self, robot: int, twist: Twist) -> tuple[float, float]:
-        """What the motors make of a command: no more than they can."""
+    def _driven(self, robot: int, row: int, twist: Twist) -> tuple[float, float]:
+        """What a robot's motors make of a command: no more than they can."""
         v, w = twist.v, twist.w
         if not (math.isfinite(v) and math.isfinite(w)):
             raise ValueError(f"robot {robot} commands the twist ({v}, {w})")
-        speed, rate = self._body.max_speed, self._body.max_turn_rate
+        speed, rate = self._motors[row]
         return max(-speed, min(speed, v)), max(-rate, min(rate, w))
 
     def _presences(self) -> tuple[Presence, ...]:
