@@ -220,6 +220,13 @@ TABLES: dict[str, TableSpec] = {
             _C("bit_error_rate", REAL), _C("msdu_bytes", INTEGER), _C("payload", OBJECT),
         ),
     ),
+    "neighbours": TableSpec(
+        "a robot that another one's card heard (`radio.neighbours`)", "rx/", attrgetter("neighbours"),
+        (
+            _C("robot", INTEGER, BUS_KEY), _C("neighbour", INTEGER, "robot"), _C("snr_db", REAL),
+            _C("rssi_dbm", REAL), _C("heard_s", SECONDS, "time_ns"), _C("frames", INTEGER),
+        ),
+    ),
     "transmit_requests": TableSpec(
         "a message handed to the radio", "truth", _requests,
         (

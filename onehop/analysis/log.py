@@ -169,6 +169,7 @@ _OF_THE_TEAM = {
     "contacts": ("robot",),
     "verdicts": ("source",),
     "receptions": ("source",),
+    "neighbours": ("neighbour",),
 }
 """Columns in which world and radio name robots of the team, and nobody else."""
 

@@ -10,6 +10,7 @@ from onehop.contracts.sections import (
     Field,
     LaserBeams,
     LaserRange,
+    Noise,
     Radius,
     RobotSection,
     Speed,
@@ -28,6 +29,9 @@ class OwnBody:
     laser_range: LaserRange | None = None
     laser_beams: LaserBeams | None = None
     laser_fov_deg: Field | None = None
+    pose_noise: Noise | None = None
+    heading_noise_deg: Noise | None = None
+    laser_noise: Noise | None = None
 
     def of(self, team: RobotSection) -> RobotSection:
         """The whole body of this robot. team: section [robot]."""

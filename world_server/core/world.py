@@ -37,6 +37,7 @@ from world_server.core.motion import Motion
 from world_server.core.orders import Judge
 from world_server.core.placement import start_poses
 from world_server.core.referee import Referee, TickSummary
+from world_server.core.sensor_noise import sensor_noise
 
 KILLED = "killed by a fault"
 RESTARTED = "restarted by a fault"
@@ -60,6 +61,11 @@ class World:
         self._judge = Judge(self._robots, walls, self._inflation)
         self._twists = np.zeros((len(self._robots), 2))
         self._lasers = Lasers(walls, bodies)
+        self._noise = {
+            robot: noise
+            for robot, body in zip(self._robots, bodies, strict=True)
+            if (noise := sensor_noise(scenario.seed, robot, body)) is not None
+        }
         self._motion = Motion(walls, bodies, self._period_ns)
         self._contact_detector = ContactDetector(self._robots, self._motion)
         self._faults = Faults(scenario.faults, self._robots)
@@ -76,6 +82,7 @@ class World:
         self._outcome: Outcome | None = None
         self.tick = 0
         self._truth: Truth | None = None
+        self._observations: dict[int, Observation] | None = None
         self._present_now: tuple[Presence, ...] | None = None
         self._begin_tick()
 
@@ -109,18 +116,34 @@ class World:
         return self._truth
 
     def observe(self) -> dict[int, Observation]:
-        """What each robot that runs at this tick sees now, by id, ids ascending."""
+        """What each robot that runs at this tick sees now, by id, ids ascending.
+
+        Pose and scan are what its sensors say, with their noise if they have any. The same values until
+        advance().
+        """
+        if self._observations is None:
+            self._observations = self._observed()
+        return self._observations
+
+    def _observed(self) -> dict[int, Observation]:
         truth = self.truth()
         tick, time_ns, observers = truth.tick, truth.time_ns, running(truth)
         scans = self._lasers.scans(self._poses, [self._row[one.robot] for one in observers])
         for one, scan in zip(observers, scans, strict=True):
             if one.robot in truth.blind:
                 scan[:] = math.inf
+            if one.robot in self._noise:
+                self._noise[one.robot].blur(scan)
             scan.flags.writeable = False
         return {
-            one.robot: Observation(tick, time_ns, one.incarnation, one.pose, one.twist, scan)
+            one.robot: Observation(tick, time_ns, one.incarnation, self._told_pose(one), one.twist, scan)
             for one, scan in zip(observers, scans, strict=True)
         }
+
+    def _told_pose(self, one: Presence) -> Pose:
+        """Where a robot takes itself to be."""
+        noise = self._noise.get(one.robot)
+        return one.pose if noise is None else noise.pose(one.pose)
 
     def advance(self, actions: Mapping[int, Action], by_hand: Sequence[FaultSection] = ()) -> None:
         """Let one period pass. A present robot without an action stands still.
@@ -168,7 +191,7 @@ class World:
         return self._referee.close("aborted", reason, self._tick_summary())
 
     def _begin_tick(self, by_hand: Sequence[FaultSection] = ()) -> None:
-        self._truth = self._present_now = None
+        self._truth = self._present_now = self._observations = None
         self._faults.expire(self.time_ns)
         self._begun = self._faults.due(self.time_ns, by_hand)
         for fault in self._begun:
