@@ -125,6 +125,7 @@ def _gains(random: np.random.Generator, own: GainsSection) -> GainsSection:
 def _radio(random: np.random.Generator, own: Any) -> Any:
     return dataclasses.replace(
         own,
+        links="",  # of a team that is not the one that is drawn
         preset=_one(random, "thesis", "thesis", "thesis", "physical", "indoor"),
         routing=_one(random, "mrdv", "mrsr", "direct"),
         rate_mbps=_one(random, 1.0, 1.0, 2.0, 5.5, 11.0),

@@ -35,6 +35,7 @@ from onehop.checking.team import Team
 from onehop.checking.voice import Voices
 from onehop.contracts.errors import LogError
 from onehop.scenario.bundle import Bundle
+from onehop.scenario.link_trace import link_trace
 from onehop.wire.journal import WireMessage
 from onehop.wire.log_reader import LoggedTick
 
@@ -93,6 +94,7 @@ def judge(
     wanted = frozenset(only) or frozenset(INVARIANTS)
     findings = Findings(wanted, kept)
     period_ns = scenario.clock.period_ns
+    trace = link_trace(log.bundle, "the log's scenario")
     completeness = Completeness(findings, period_ns)
     digest = DigestCheck(findings)
     collisions = Collisions(findings, scenario)
@@ -102,10 +104,10 @@ def judge(
             ((COMPLETE,), completeness),
             ((OWN_VOICE, SILENCE), Voices(findings, scenario)),
             ((MEDIAN, SHAPE, EPOCHS), Team(findings, scenario.team)),
-            ((ONE_LEADER, ONE_TEAM, RE_ELECTION), Leadership(findings, scenario)),
+            ((ONE_LEADER, ONE_TEAM, RE_ELECTION), Leadership(findings, scenario, trace)),
             ((RADIO_INTEGRITY,), RadioIntegrity(findings, scenario.radio, period_ns)),
             ((FAULT_BIT,), FaultBit(findings, scenario)),
-            ((FAULT_BIT,), FaultyAir(findings, scenario)),
+            ((FAULT_BIT,), FaultyAir(findings, scenario, trace)),
             ((NO_COLLISION,), collisions),
             ((MOTION,), Motion(findings, scenario)),
         )

@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from onehop.contracts.arrays import FloatArray
+from onehop.contracts.link_trace import LinkTrace
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import (
@@ -43,13 +44,17 @@ class Briefing(Wire, frozen=True):
 
 
 class RadioBriefing(Wire, frozen=True):
-    """All that the radio proxy is told before it starts. walls: segments x0, y0, x1, y1 [m]."""
+    """All that the radio proxy is told before it starts.
+
+    walls: segments x0, y0, x1, y1 [m]. links: that were measured, if there are any.
+    """
 
     seed: int
     period_ns: int
     robots: tuple[int, ...]
     radio: RadioSection
     walls: tuple[tuple[float, float, float, float], ...]
+    links: LinkTrace | None = None
 
 
 class LogBriefing(Wire, frozen=True):
@@ -92,7 +97,9 @@ def _team_of(scenario: Scenario, program: str) -> TeamSection:
     return team if alike == team.robots else replace(team, ids=alike)
 
 
-def radio_briefing(scenario: Scenario, walls: FloatArray) -> RadioBriefing:
+def radio_briefing(
+    scenario: Scenario, walls: FloatArray, links: LinkTrace | None = None
+) -> RadioBriefing:
     """What the radio proxy may know; walls, (n, 4) [m], only if they weaken signals."""
     segments = walls.tolist() if scenario.radio.wall_loss_db > 0 else []
     return RadioBriefing(
@@ -101,4 +108,5 @@ def radio_briefing(scenario: Scenario, walls: FloatArray) -> RadioBriefing:
         robots=scenario.team.robots,
         radio=scenario.radio,
         walls=tuple((x0, y0, x1, y1) for x0, y0, x1, y1 in segments),
+        links=links,
     )

@@ -31,6 +31,9 @@ class RadioSection:
     capture_db: a frame stronger by this takes over a receiver in the preamble of another [dB]; None:
         a receiver that is locked stays so.
     frequency_hz, antenna_gain_dbi (each end), system_loss_db, reference_distance d0 [m].
+    links: file of links that were measured, beside the scenario (docs/link-traces.md). links_use:
+        "instead" of path loss, walls and shadowing, so that a link which it does not have is none, or
+        "on top" of them, as a further loss.
     fading: a new draw for each "frame", or one for each "exchange". wall_loss_db: per wall crossed.
     rate_mbps: of data frames. rts_threshold_bytes: longer MSDUs are sent with RTS/CTS (2304: never).
     mac_header_bytes: 34 in the thesis's sums, 28 with three addresses.
@@ -74,6 +77,8 @@ class RadioSection:
     antenna_gain_dbi: Annotated[float, Range(-50.0, 50.0)] = 0.0
     system_loss_db: Annotated[float, Range(-100.0, 100.0)] = 0.0
     reference_distance: Annotated[float, Range(1e-3, 1e3)] = 1.0
+    links: str = ""
+    links_use: Literal["instead", "on top"] = "instead"
     fading: Literal["frame", "exchange"] = "frame"
     wall_loss_db: Annotated[float, Range(0.0, 1e3)] = 0.0
     rts_threshold_bytes: Annotated[int, Range(0, 2304)] = 0

@@ -11,6 +11,7 @@ from onehop.maps.map_file import load_map
 from onehop.programs.find import search_in
 from onehop.programs.host import Host, ProgramError
 from onehop.scenario.bundle import Bundle
+from onehop.scenario.link_trace import link_trace
 from onehop.wire.codec import encode
 from onehop.wire.journal import Journal, WireMessage
 from onehop.wire.spoken import action_in, failed
@@ -35,7 +36,7 @@ def run(
     search_in(bundle.folder)
     walls = load_map(scenario.map, bundle.files)
     world = World(scenario, walls)
-    radio = Radio(radio_briefing(scenario, walls.segments))
+    radio = Radio(radio_briefing(scenario, walls.segments, link_trace(bundle)))
     robots: dict[tuple[int, int], Host] = {}
     limits = ActionLimits(scenario.team.robots)
     outcome = None

@@ -12,6 +12,7 @@ from radio_proxy.core.addresses import RobotId, StationIndex
 from radio_proxy.core.airtime import delay_ns
 from radio_proxy.core.fast_fading import FastFading
 from radio_proxy.core.link_budget import LinkBudget
+from radio_proxy.core.measured_links import MeasuredLinks
 from radio_proxy.core.shadowing import Shadowing
 
 SILENT_DB = -200.0
@@ -43,7 +44,7 @@ class Propagation:
     """Who is where in this tick, and at which mean SNR each receives each. robots: sorted ids.
 
     stations: theirs, all of them. noise_rise_db: noise at every station above the floor, by jams [dB].
-    shadowing, fast_fading: None where there is none.
+    shadowing, fast_fading, measured: None where there is none.
     """
 
     def __init__(
@@ -53,12 +54,15 @@ class Propagation:
         walls: tuple[Wall, ...],
         shadowing: Shadowing | None = None,
         fast_fading: FastFading | None = None,
+        measured: MeasuredLinks | None = None,
     ) -> None:
         self.budget = budget
         self._reach = budget.reach
         self._shadowing = shadowing
         self._fast_fading = fast_fading
+        self._measured = measured
         self.stations = tuple([StationIndex(i) for i in range(len(robots))])
+        self._robots = robots
         self._index: dict[int, StationIndex] = dict(zip(robots, self.stations, strict=True))
         self._walls = walls if budget.wall_loss_db else ()
         self._positions: dict[StationIndex, tuple[float, float]] = {}
@@ -85,12 +89,12 @@ class Propagation:
     ) -> None:
         """Take over the poses and faults of a tick; nothing is computed until somebody transmits.
 
-        What was computed holds while all of them stay, unless fast fading asks for the way of a tick.
+        What was computed holds while all of them stay, unless fast fading asks for the way of a tick, or
+        measured links for its time.
         tick: when it begins and ends [ns]; robots are at these poses at its end.
         """
-        if self._fast_fading is not None or (
-            (present, cuts, jams) != (self._present, self._cuts, self._jams)
-        ):
+        changing = self._fast_fading is not None or self._measured is not None
+        if changing or ((present, cuts, jams) != (self._present, self._cuts, self._jams)):
             self._stale = True
         self._before, self._present = self._present, present
         self._tick = tick
@@ -209,6 +213,26 @@ class Propagation:
         return 10.0 * elementary.log10(total)
 
     def _compute_row(self, sender: StationIndex) -> list[float]:
+        """What everybody receives of a sender: as it was measured, or as the model says."""
+        if self._measured is None:
+            row = self._modelled_row(sender)
+        elif self._measured.is_all:
+            row = [SILENT_DB] * len(self.stations)
+            for robot, snr_db in self._measured.snr_db(self._robots[sender], self._tick[1]).items():
+                other = self._index[robot]
+                if snr_db is not None and other in self._positions:
+                    row[other] = snr_db
+        else:
+            row = self._modelled_row(sender)
+            for robot, loss_db in self._measured.loss_db(self._robots[sender], self._tick[1]).items():
+                other = self._index[robot]
+                if row[other] > SILENT_DB:
+                    row[other] = SILENT_DB if loss_db is None else row[other] - loss_db
+        row[sender] = OWN_DB
+        self._apply_cuts(sender, row)
+        return row
+
+    def _modelled_row(self, sender: StationIndex) -> list[float]:
         """The row of a sender; the path loss of mean_snr_db, by squared distances, for all in reach."""
         row = [SILENT_DB] * len(self.stations)
         budget, reach = self.budget, self._reach
@@ -230,8 +254,6 @@ class Propagation:
             if self._walls:
                 crossed = walls_crossed(self._walls, x, y, there_x, there_y)
                 row[other] -= crossed * budget.wall_loss_db
-        row[sender] = OWN_DB
-        self._apply_cuts(sender, row)
         return row
 
     def _stations_near(self, x: float, y: float) -> list[tuple[StationIndex, float, float]]:

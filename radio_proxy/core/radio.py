@@ -26,6 +26,7 @@ from radio_proxy.core.fast_fading import fast_fading
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.link_layer import LinkLayer
 from radio_proxy.core.link_rules import link_rules
+from radio_proxy.core.measured_links import MeasuredLinks
 from radio_proxy.core.nic import Nic
 from radio_proxy.core.propagation import Propagation
 from radio_proxy.core.routing.direct import DirectRouter
@@ -51,6 +52,7 @@ class Radio:
             briefing.walls,
             shadowing(budget, seed),
             fast_fading(section, seed),
+            None if briefing.links is None else MeasuredLinks(briefing.links, section, budget),
         )
         self._corrupter = Corrupter(generator(briefing.seed, "faults"))
         self._eavesdropper = _eavesdropper(briefing, robots, self._propagation)
