@@ -76,6 +76,8 @@ class FaultyAir:
         """What arrives in a jam has no SNR that the jam would not leave it."""
         if self._before is None or not self._before.jams or len(verdict.path) < 2:
             return
+        if not self._budget.is_known:
+            return
         sender, receiver = verdict.path[-2:]
         here, there = now.present.get(receiver), now.present.get(sender)
         if here is None or there is None:

@@ -25,11 +25,13 @@ from onehop.checking.invariants import (
     SHAPE,
     SILENCE,
     UNEXERCISED,
+    WITH_ANOTHER_PROPAGATION,
     WITHOUT_TEAM,
 )
 from onehop.checking.leaders import Leadership
 from onehop.checking.motion import Collisions, Motion
 from onehop.checking.radio import RadioIntegrity
+from onehop.checking.reach import is_known
 from onehop.checking.snapshot import Snapshot, snapshot
 from onehop.checking.team import Team
 from onehop.checking.voice import Voices
@@ -127,6 +129,8 @@ def judge(
         is_whole = summary is not None and summary["ticks"] == reading.count
         collisions.finish(summary, is_whole)
     reasons = {**UNEXERCISED, **(NOT_IN_THESIS if scenario.team.profile == "thesis" else {})}
+    if not is_known(scenario.radio):
+        reasons |= WITH_ANOTHER_PROPAGATION
     if reading.count and not reading.has_team:
         reasons |= WITHOUT_TEAM
     return _report(findings, reasons, reading.count)

@@ -34,6 +34,9 @@ PLACE_SIGMAS = 3.0
 FAST_FADE_DB = 12.0
 """What many paths add at most to the mean [dB]: more than that has a probability of 1e-7."""
 
+MODEL = "log-distance"
+"""The propagation that is worked out anew."""
+
 _LIGHT_SPEED = 3.0e8
 
 
@@ -60,12 +63,17 @@ def _given(value: float | None, default: float) -> float:
     return default if value is None else value
 
 
+def is_known(radio: RadioSection) -> bool:
+    """Whether propagation is worked out anew here: not that of a plugin, unless a trace replaces it."""
+    return radio.propagation == MODEL or (radio.links != "" and radio.links_use == "instead")
+
+
 class Budget:
     """Mean SNR under one radio section. shadowing_db: standard deviation of the fading of frames.
 
     worst_place_db, best_db: what places take away at most, and what places and many paths add at most;
     links that were measured instead are as they are at their places. unweakened_db: of a signal that
-    loses nothing on its way.
+    loses nothing on its way. is_known: whether mean SNR can be worked out at all.
     """
 
     def __init__(self, radio: RadioSection) -> None:
@@ -78,6 +86,7 @@ class Budget:
         spatial_db = 0.0 if is_measured else _given(radio.spatial_shadowing_db, preset.spatial)
         self.worst_place_db = PLACE_SIGMAS * spatial_db
         self.best_db = self.worst_place_db + (0.0 if radio.fast_fading == "none" else FAST_FADE_DB)
+        self.is_known = is_known(radio)
         self.nearest = radio.reference_distance
         loss = 20.0 * math.log10(4.0 * math.pi * self.nearest * radio.frequency_hz / _LIGHT_SPEED)
         gain = 2.0 * radio.antenna_gain_dbi - radio.system_loss_db
@@ -160,6 +169,8 @@ class Links:
         linked = weakest - budget.worst_place_db >= budget.threshold_db + MARGIN_DB
         strongest = np.maximum(snr, snr.T) + budget.best_db
         self.apart = strongest < budget.threshold_db - FARTHEST_FADE_DB
+        if not budget.is_known:
+            linked[:], self.apart[:] = False, False
         changed = incarnation != self._incarnation
         self._incarnation = incarnation
         if not now.follows:

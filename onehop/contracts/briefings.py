@@ -42,8 +42,21 @@ class Briefing(Wire, frozen=True):
     planner: PlannerSection
     radio: RadioSection
 
+    def plugin(self, group: str) -> Any:  # noqa: ARG002 - see PluggedBriefing
+        """What is plugged in under a group (plugin_names.py); None where a built-in one is named."""
+        return None
 
-class RadioBriefing(Wire, frozen=True):
+
+class PluggedBriefing(Briefing, frozen=True):
+    """The same where the robot is made: with planner and gain policy that are not built in, by group."""
+
+    plugins: dict[str, Any]
+
+    def plugin(self, group: str) -> Any:
+        return self.plugins.get(group)
+
+
+class RadioBriefing(Wire, frozen=True, omit_defaults=True):
     """All that the radio proxy is told before it starts.
 
     walls: segments x0, y0, x1, y1 [m]. links: that were measured, if there are any.
@@ -55,6 +68,19 @@ class RadioBriefing(Wire, frozen=True):
     radio: RadioSection
     walls: tuple[tuple[float, float, float, float], ...]
     links: LinkTrace | None = None
+
+    def plugin(self, group: str) -> Any:  # noqa: ARG002 - see PluggedRadioBriefing
+        """What is plugged in under a group (plugin_names.py); None where a built-in one is named."""
+        return None
+
+
+class PluggedRadioBriefing(RadioBriefing, frozen=True):
+    """The same where the radio is made: with routing and propagation that are not built in, by group."""
+
+    plugins: dict[str, Any] = {}  # noqa: RUF012 - a struct copies its defaults
+
+    def plugin(self, group: str) -> Any:
+        return self.plugins.get(group)
 
 
 class LogBriefing(Wire, frozen=True):

@@ -5,10 +5,10 @@ when a mission is about to run (onehop/programs), so that a log can be read wher
 """
 
 import math
-import re
 from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
+from onehop.contracts.plugin_names import NAME, NAME_LETTERS
 from onehop.contracts.problems import Problem
 from onehop.contracts.ranges import Range
 
@@ -16,11 +16,6 @@ RobotId = Annotated[int, Range(1, 2**31 - 1)]
 
 BUILT_IN = "robot_agent.core.robot:Robot"
 """The team of this project."""
-
-_PROGRAM = re.compile(r"[A-Za-z_]\w*(\.\w+)*:[A-Za-z_]\w*|[A-Za-z_][\w.-]*", re.ASCII)
-"""package.module:Class, or the name under which an installed package offers one."""
-
-_PROGRAM_LETTERS = 200
 
 _DEEPEST = 8
 """Tables and lists within each other."""
@@ -31,7 +26,7 @@ _WHOLE = Range(-(2**63), 2**63 - 1)
 
 def program_problems(program: str) -> Iterator[Problem]:
     """What is wrong with the name of a program."""
-    if not _PROGRAM.fullmatch(program) or len(program) > _PROGRAM_LETTERS:
+    if not NAME.fullmatch(program) or len(program) > NAME_LETTERS:
         yield Problem("program", f"{program!r:.60} names no program", '"package.module:Class"')
 
 

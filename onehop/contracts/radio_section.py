@@ -4,8 +4,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
+from onehop.contracts.plugin_names import PluginName, name_problems
 from onehop.contracts.problems import Problem
 from onehop.contracts.ranges import Range
+
+RoutingName = Literal["direct", "mrsr", "mrdv"]
+PropagationName = Literal["log-distance"]
+"""What is built in; packages may add others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +36,7 @@ class RadioSection:
     capture_db: a frame stronger by this takes over a receiver in the preamble of another [dB]; None:
         a receiver that is locked stays so.
     frequency_hz, antenna_gain_dbi (each end), system_loss_db, reference_distance d0 [m].
+    propagation: what a signal loses between two places on the mean: "log-distance", by the keys above.
     links: file of links that were measured, beside the scenario (docs/link-traces.md). links_use:
         "instead" of path loss, walls and shadowing, so that a link which it does not have is none, or
         "on top" of them, as a further loss.
@@ -77,6 +83,7 @@ class RadioSection:
     antenna_gain_dbi: Annotated[float, Range(-50.0, 50.0)] = 0.0
     system_loss_db: Annotated[float, Range(-100.0, 100.0)] = 0.0
     reference_distance: Annotated[float, Range(1e-3, 1e3)] = 1.0
+    propagation: PropagationName | PluginName = "log-distance"
     links: str = ""
     links_use: Literal["instead", "on top"] = "instead"
     fading: Literal["frame", "exchange"] = "frame"
@@ -86,12 +93,14 @@ class RadioSection:
     cts_timeout_us: Annotated[float, Range(222.0, 1e5)] = 222.0
     queue_frames: Annotated[int, Range(1, 100_000)] = 64
     message_lifetime_s: Annotated[float, Range(0.0, 3600.0)] = 0.0
-    routing: Literal["direct", "mrsr", "mrdv"] = "mrdv"
+    routing: RoutingName | PluginName = "mrdv"
     neighbours: bool = False
     hello_s: Annotated[float, Range(0.0, 3600.0)] = 0.0
     gamma_distance: Annotated[float, Range(1e-3, 1e9)] = 10.0
 
     def problems(self) -> Iterator[Problem]:
+        yield from name_problems("routing", self.routing)
+        yield from name_problems("propagation", self.propagation)
         if self.rate_mbps not in (1.0, 2.0, 5.5, 11.0):
             yield Problem("rate_mbps", f"{self.rate_mbps} Mb/s", "1, 2, 5.5 or 11 (802.11b)")
         if self.retry_limit is not None:

@@ -8,18 +8,21 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from onehop.contracts.fault_section import FaultSection
+from onehop.contracts.plugin_names import GAIN_POLICIES, PLANNERS, PROPAGATION, ROUTING
 from onehop.contracts.problems import Problem
-from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.radio_section import PropagationName, RadioSection, RoutingName
 from onehop.contracts.ranges import Range, out_of_range
 from onehop.contracts.robot_entry import RobotEntry
 from onehop.contracts.sections import (
     ClockSection,
+    GainPolicyName,
     GainsSection,
     GoalSection,
     MapSection,
+    PlannerName,
     PlannerSection,
     RobotSection,
     StartSection,
@@ -29,6 +32,20 @@ from onehop.contracts.sections import (
 NAME = re.compile(r"\w[^/\\]*")
 NAME_BYTES = 200
 """What a scenario may be called: its log's folder bears the name, and the time of its run."""
+
+BUILT_IN: dict[str, tuple[str, ...]] = {
+    PLANNERS: get_args(PlannerName),
+    GAIN_POLICIES: get_args(GainPolicyName),
+    ROUTING: get_args(RoutingName),
+    PROPAGATION: get_args(PropagationName),
+}
+"""Names that cores know themselves, by group."""
+
+
+def plugins(names: dict[str, str]) -> dict[str, str]:
+    """Those of these names, by group, that are not built in."""
+    return {group: name for group, name in names.items() if name not in BUILT_IN[group]}
+
 
 PATH_END = 0.5
 """Distance of a given path's end from the goal, at most, in the goal's tolerances: a leader arrives at
@@ -58,6 +75,18 @@ class Scenario:
     clock: ClockSection = field(default_factory=ClockSection)
     robots: tuple[RobotEntry, ...] = ()
     faults: tuple[FaultSection, ...] = ()
+
+    @property
+    def plugins(self) -> dict[str, str]:
+        """What it takes that is not built in: names by group (onehop/plugins.py)."""
+        return plugins(
+            {
+                PLANNERS: self.planner.kind,
+                GAIN_POLICIES: self.gains.policy,
+                ROUTING: self.radio.routing,
+                PROPAGATION: self.radio.propagation,
+            }
+        )
 
     def program_of(self, robot: int) -> tuple[str, dict[str, Any]]:
         """The program that drives a robot, and the parameters that it is given."""

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
+from onehop.contracts.plugin_names import PluginName, name_problems
 from onehop.contracts.problems import Problem
 from onehop.contracts.program_section import (
     BUILT_IN,
@@ -121,6 +122,10 @@ class RobotSection:
     laser_noise: Noise = 0.0
 
 
+GainPolicyName = Literal["throughput", "constant", "smooth"]
+"""Policies that are built in; packages may add others."""
+
+
 @dataclass(frozen=True, slots=True)
 class GainsSection:
     """Gains of the tracking controller (thesis eq. 3.11, 3.12) and the policy of k_rho.
@@ -137,11 +142,12 @@ class GainsSection:
     k_beta: Annotated[float, Range(-1e3, 1e3)] = -1.5
     k_rho_min: Annotated[float, Range(1e-3, 1e3)] = 1.0
     k_rho_max: Annotated[float, Range(1e-3, 1e3)] = 3.0
-    policy: Literal["throughput", "constant", "smooth"] = "throughput"
+    policy: GainPolicyName | PluginName = "throughput"
     threshold: Literal["thesis", "ideal", "slot"] = "thesis"
     reverse: bool = False
 
     def problems(self) -> Iterator[Problem]:
+        yield from name_problems("policy", self.policy)
         if not self.k_beta < 0:
             yield Problem("k_beta", f"{self.k_beta} is not negative", "k_beta < 0 (eq. 3.14)")
         if self.k_rho_max < self.k_rho_min:
@@ -218,6 +224,10 @@ class TeamSection:
             yield Problem("ids", f"{len(self.ids)} robots", f"at most {MOST_ROBOTS}")
 
 
+PlannerName = Literal["escape", "modified", "original", "path"]
+"""Ways of way-finding that are built in; packages may add others."""
+
+
 @dataclass(frozen=True, slots=True)
 class PlannerSection:
     """Way-finding of the leader (thesis 3.4). inflation: clearance kept from obstacles [m].
@@ -229,7 +239,7 @@ class PlannerSection:
     patience: distance that it may search without coming closer to the goal, in laser ranges.
     """
 
-    kind: Literal["escape", "modified", "original", "path"] = "escape"
+    kind: PlannerName | PluginName = "escape"
     path: tuple[Point, ...] = ()
     samples: Annotated[int, Range(1, 5000)] = 200
     inflation: Annotated[float, Range(0.01, 100.0)] = 0.5
@@ -239,6 +249,7 @@ class PlannerSection:
     patience: Annotated[float, Range(0.1, 1e6)] = 50.0
 
     def problems(self) -> Iterator[Problem]:
+        yield from name_problems("kind", self.kind)
         if self.kind == "path" and len(self.path) < 2:
             yield Problem(
                 "path", f"{len(self.path)} points to drive along", "at least two, [[x, y], [x, y]]"

@@ -8,6 +8,7 @@ from onehop.contracts.briefings import radio_briefing, robot_briefing
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import Action, Carriage, Outcome, percept, running
 from onehop.maps.map_file import load_map
+from onehop.plugins import plugged_radio
 from onehop.programs.find import search_in
 from onehop.programs.host import Host, ProgramError
 from onehop.scenario.bundle import Bundle
@@ -36,7 +37,7 @@ def run(
     search_in(bundle.folder)
     walls = load_map(scenario.map, bundle.files)
     world = World(scenario, walls)
-    radio = Radio(radio_briefing(scenario, walls.segments, link_trace(bundle)))
+    radio = Radio(plugged_radio(radio_briefing(scenario, walls.segments, link_trace(bundle))))
     robots: dict[tuple[int, int], Host] = {}
     limits = ActionLimits(scenario.team.robots)
     outcome = None

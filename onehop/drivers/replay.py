@@ -21,6 +21,7 @@ from onehop.contracts.messages import Action, Inbox, Observation, Truth, percept
 from onehop.contracts.scenario import Scenario
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
+from onehop.plugins import plugged_radio
 from onehop.programs.find import check, search_in
 from onehop.programs.host import Host, ProgramError
 from onehop.scenario.link_trace import link_trace
@@ -244,7 +245,7 @@ class _RobotPlayer:
 
 
 def _radio(scenario: Scenario, walls: WallMap, links: LinkTrace | None) -> Player:
-    radio = Radio(radio_briefing(scenario, walls.segments, links))
+    radio = Radio(plugged_radio(radio_briefing(scenario, walls.segments, links)))
 
     def play(tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         truth = _value(Truth, tick, topics.TRUTH)

@@ -73,7 +73,7 @@ class ProcessGroup:
 
     Each gets its own password through its environment, a lifeline that ends it when this process dies,
     and a file in the folder `words` for what it says. If nobody said anything the folder goes.
-    programs: where robots look for programs that are not installed. Raises InputError when this system
+    programs: where robots and radio look for what is not installed. Raises InputError when this system
     does not let so many processes work together.
     """
 
@@ -83,7 +83,7 @@ class ProcessGroup:
         self._endpoint = endpoint
         self._mission = mission
         self._words = words
-        self._programs = programs
+        self._search = ["--programs", programs] if programs else []
         others = (topics.RADIO, topics.RECORDER, topics.OPERATOR, topics.INJECTOR)
         names = [*others, *map(topics.robot_name, robots)]
         require_descriptors(len(names))
@@ -117,7 +117,7 @@ class ProcessGroup:
         self._start(topics.WORLD, "world_server", [*arguments, "--listen", self._endpoint])
 
     def start_radio(self) -> None:
-        self._start(topics.RADIO, "radio_proxy", ["--connect", self._endpoint])
+        self._start(topics.RADIO, "radio_proxy", ["--connect", self._endpoint, *self._search])
 
     def start_recorder(self, out: Path, with_file: bool, claim: int) -> None:
         """claim: descriptor that holds the folder `out`, from now on for the recorder too."""
@@ -132,7 +132,7 @@ class ProcessGroup:
 
     def start_robot(self, robot: int) -> None:
         arguments = ["--id", str(robot), "--connect", self._endpoint]
-        arguments += ["--programs", self._programs] if self._programs else []
+        arguments += self._search
         self._start(topics.robot_name(robot), "robot_agent", arguments)
 
     def _start(self, name: str, module: str, arguments: Sequence[str], *inherited: int) -> None:

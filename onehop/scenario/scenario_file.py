@@ -16,6 +16,7 @@ from typing import Any
 
 from onehop.contracts.errors import ScenarioError
 from onehop.maps.map_file import LARGEST_FILE, map_files
+from onehop.plugins import check_names
 from onehop.scenario.bundle import Bundle
 from onehop.scenario.changes import Change, apply_change
 from onehop.scenario.link_trace import link_trace
@@ -54,6 +55,7 @@ def load(
         apply_change(table, setting)
     table.setdefault("name", path.stem)
     scenario = structure(table, str(path))
+    check_names(scenario, str(path))
     files = _read_map_files(scenario.map.file, directory, str(path))
     return _with_links(Bundle(scenario, files, str(path.parent.absolute())), path.parent, str(path))
 
@@ -108,6 +110,7 @@ def load_map_mission(
     for setting in settings:
         apply_change(table, setting)
     scenario = structure(table, str(map_file))
+    check_names(scenario, str(map_file))
     files = _read_map_files(scenario.map.file, map_file.parent, str(map_file))
     return _with_links(Bundle(scenario, files), map_file.parent, str(map_file))
 

@@ -31,12 +31,13 @@ OUTCOME = "outcome"
 """Names in the file; the last is that of the metadata that end a log."""
 
 PROGRAMS = "programs"
-"""Where the robots' programs lay, if they are not ours: a re-execution looks for them there again."""
+"""Where programs and plugins lay, if they are not ours: a re-execution looks for them there again."""
 
 
 def _has_own_programs(bundle: Bundle) -> bool:
     scenario = bundle.scenario
-    return any(scenario.program_of(robot)[0] != BUILT_IN for robot in scenario.team.robots)
+    programs = (scenario.program_of(robot)[0] for robot in scenario.team.robots)
+    return bool(scenario.plugins) or any(program != BUILT_IN for program in programs)
 
 
 class LogWriter:

@@ -16,7 +16,8 @@ from radio_proxy.core.addresses import RobotId, StationIndex
 from radio_proxy.core.draws import Draws
 from radio_proxy.core.emission import Emission, Judgement
 from radio_proxy.core.link_rules import LinkRules
-from radio_proxy.core.propagation import OWN_DB, SILENT_DB, Propagation
+from radio_proxy.core.path_loss import OWN_DB, SILENT_DB
+from radio_proxy.core.propagation import Propagation
 from radio_proxy.core.reception import Receivers
 
 

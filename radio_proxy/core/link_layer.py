@@ -25,7 +25,8 @@ from radio_proxy.core.error_rates import bit_error_rate
 from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.link_rules import link_rules
 from radio_proxy.core.medium import Medium
-from radio_proxy.core.propagation import OWN_DB, SILENT_DB, Propagation
+from radio_proxy.core.path_loss import OWN_DB, SILENT_DB
+from radio_proxy.core.propagation import Propagation
 from radio_proxy.core.routing.interface import Router
 
 

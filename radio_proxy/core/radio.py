@@ -12,9 +12,10 @@ from onehop.contracts.messages import (
     TransmitRequest,
     Truth,
 )
-from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.plugin_names import PROPAGATION, ROUTING
 from onehop.contracts.randomness import generator
 from onehop.contracts.units import nanoseconds
+from radio_proxy.core import path_loss
 from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.corruption import Corrupter
 from radio_proxy.core.data_message import DataMessage, DataPacket
@@ -28,12 +29,11 @@ from radio_proxy.core.link_layer import LinkLayer
 from radio_proxy.core.link_rules import link_rules
 from radio_proxy.core.measured_links import MeasuredLinks
 from radio_proxy.core.nic import Nic
+from radio_proxy.core.path_loss import HeldToRange, ModelMaker, PropagationModel
 from radio_proxy.core.propagation import Propagation
-from radio_proxy.core.routing.direct import DirectRouter
-from radio_proxy.core.routing.interface import NicServices, Router
-from radio_proxy.core.routing.mrdv import MrdvRouter
-from radio_proxy.core.routing.mrsr import MrsrRouter
-from radio_proxy.core.shadowing import shadowing
+from radio_proxy.core.routing import built_in as routing
+from radio_proxy.core.routing.built_in import RouterMaker
+from radio_proxy.core.routing.interface import Router
 
 
 class Radio:
@@ -50,10 +50,11 @@ class Radio:
             budget,
             robots,
             briefing.walls,
-            shadowing(budget, seed),
-            fast_fading(section, seed),
-            None if briefing.links is None else MeasuredLinks(briefing.links, section, budget),
+            fast_fading=fast_fading(section, seed),
+            measured=None if briefing.links is None else MeasuredLinks(briefing.links, section, budget),
+            model=_model(briefing),
         )
+        self._make_router: RouterMaker = briefing.plugin(ROUTING) or routing.BUILT_IN[section.routing]
         self._corrupter = Corrupter(generator(briefing.seed, "faults"))
         self._eavesdropper = _eavesdropper(briefing, robots, self._propagation)
         self._deliveries = Deliveries(self._corrupter, self._eavesdropper)
@@ -108,7 +109,7 @@ class Radio:
     def _start_nic(self, robot: RobotId, incarnation: int, now: int) -> None:
         shared = self._link, self._deliveries, self._events, self._draws
         nic = Nic(robot, incarnation, *shared, self._request_of)
-        router = _router(nic, self._section, now)
+        router = self._make_router(nic, self._section, now)
         self._nics[robot] = nic, router
         self._link.attach(robot, router)
 
@@ -159,10 +160,9 @@ def _eavesdropper(
     return Eavesdropper(robots, propagation, link_rules(briefing.radio), draws)
 
 
-def _router(nic: NicServices, section: RadioSection, now: int) -> Router:
-    """The routing protocol of a scenario on one robot."""
-    if section.routing == "mrsr":
-        return MrsrRouter(nic, section.gamma_distance)
-    if section.routing == "mrdv":
-        return MrdvRouter(nic, section.gamma_distance, now, nanoseconds(section.hello_s))
-    return DirectRouter(nic)
+def _model(briefing: RadioBriefing) -> PropagationModel:
+    """The propagation that a scenario names: built in, or handed in."""
+    own: ModelMaker | None = briefing.plugin(PROPAGATION)
+    if own is not None:
+        return HeldToRange(own(briefing))
+    return path_loss.BUILT_IN[briefing.radio.propagation](briefing)
