@@ -155,7 +155,8 @@ def _of_robots(scenario: Scenario, robots: tuple[int, ...]) -> Scenario:
     ids = () if robots == tuple(range(1, len(robots) + 1)) else robots
     team = replace(scenario.team, size=len(robots), ids=ids)
     faults = tuple(filter(None, (_fault_of(fault, robots) for fault in scenario.faults)))
-    return replace(scenario, team=team, faults=faults)
+    own = tuple(one for one in scenario.robots if one.id in robots)
+    return replace(scenario, team=team, robots=own, faults=faults)
 
 
 def _fault_of(fault: FaultSection, robots: tuple[int, ...]) -> FaultSection | None:

@@ -92,7 +92,7 @@ def judge(
     scenario, summary = log.bundle.scenario, log.summary
     wanted = frozenset(only) or frozenset(INVARIANTS)
     findings = Findings(wanted, kept)
-    period_ns, robots = scenario.clock.period_ns, scenario.team.robots
+    period_ns = scenario.clock.period_ns
     completeness = Completeness(findings, period_ns)
     digest = DigestCheck(findings)
     collisions = Collisions(findings, scenario)
@@ -100,7 +100,7 @@ def judge(
         check
         for names, check in (
             ((COMPLETE,), completeness),
-            ((OWN_VOICE, SILENCE), Voices(findings, robots)),
+            ((OWN_VOICE, SILENCE), Voices(findings, scenario)),
             ((MEDIAN, SHAPE, EPOCHS), Team(findings, scenario.team)),
             ((ONE_LEADER, ONE_TEAM, RE_ELECTION), Leadership(findings, scenario)),
             ((RADIO_INTEGRITY,), RadioIntegrity(findings, scenario.radio, period_ns)),

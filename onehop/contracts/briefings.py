@@ -78,7 +78,7 @@ def robot_briefing(scenario: Scenario, robot: int, incarnation: int) -> Briefing
         parameters=parameters,
         goal=scenario.goal,
         team=_team_of(scenario, program),
-        body=scenario.robot,
+        body=scenario.body_of(robot),
         gains=scenario.gains,
         planner=scenario.planner,
         radio=scenario.radio,

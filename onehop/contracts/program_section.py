@@ -1,4 +1,4 @@
-"""Which program drives a robot, and with which parameters: for the whole team, and for single robots.
+"""Which program drives a robot, and with which parameters: what of a name and a table can be neither.
 
 Parameters are a free table here. The program's own dataclass says what may stand in it, and is asked
 when a mission is about to run (onehop/programs), so that a log can be read where its programs are not.
@@ -7,7 +7,6 @@ when a mission is about to run (onehop/programs), so that a log can be read wher
 import math
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Annotated, Any
 
 from onehop.contracts.problems import Problem
@@ -28,24 +27,6 @@ _DEEPEST = 8
 
 _WHOLE = Range(-(2**63), 2**63 - 1)
 """Whole numbers that travel to a robot."""
-
-
-@dataclass(frozen=True, slots=True)
-class RobotEntry:
-    """What one robot has of its own.
-
-    program: empty for that of the team. parameters: with a program of its own all that it is given;
-    without one in place of those of the team that have the same names.
-    """
-
-    id: RobotId
-    program: str = ""
-    parameters: dict[str, Any] = field(default_factory=dict)
-
-    def problems(self) -> Iterator[Problem]:
-        if self.program:
-            yield from program_problems(self.program)
-        yield from parameter_problems(self.parameters)
 
 
 def program_problems(program: str) -> Iterator[Problem]:

@@ -44,6 +44,8 @@ class RadioSection:
     message_lifetime_s: after which a message is dropped where it waits, unless it has a lifetime of its
         own, as all messages of the team have; 0: never [s].
     routing: "direct" (one hop only), "mrsr" (on DSR) or "mrdv" (on AODV).
+    neighbours: whether cards tell their robots whom they hear: SNR and RSSI of each one's last frame,
+        whoever it was for.
     hello_s: period of MRDV's broadcast hellos (RFC 3561, 6.9), 0 for none [s].
     gamma_distance: remaining distance per unit of gamma in p_r = min(1, (1/v)^gamma) [m].
     """
@@ -80,6 +82,7 @@ class RadioSection:
     queue_frames: Annotated[int, Range(1, 100_000)] = 64
     message_lifetime_s: Annotated[float, Range(0.0, 3600.0)] = 0.0
     routing: Literal["direct", "mrsr", "mrdv"] = "mrdv"
+    neighbours: bool = False
     hello_s: Annotated[float, Range(0.0, 3600.0)] = 0.0
     gamma_distance: Annotated[float, Range(1e-3, 1e9)] = 10.0
 

@@ -12,9 +12,9 @@ from typing import Annotated, Any, Literal
 
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.problems import Problem
-from onehop.contracts.program_section import RobotEntry
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.ranges import Range, out_of_range
+from onehop.contracts.robot_entry import RobotEntry
 from onehop.contracts.sections import (
     ClockSection,
     GainsSection,
@@ -69,6 +69,16 @@ class Scenario:
             return own.program, own.parameters
         return team.program, {**team.parameters, **own.parameters}
 
+    def body_of(self, robot: int) -> RobotSection:
+        """Body and sensors of a robot: section [robot], and what its own entry says."""
+        own = next((one for one in self.robots if one.id == robot), None)
+        return self.robot if own is None else own.body.of(self.robot)
+
+    @property
+    def bodies(self) -> tuple[RobotSection, ...]:
+        """Of every robot, in order of id."""
+        return tuple(self.body_of(robot) for robot in self.team.robots)
+
     def problems(self) -> Iterator[Problem]:
         """Everything that keeps this mission from being run: ranges, sections, then across them."""
         if not _is_name(self.name):
@@ -88,10 +98,11 @@ class Scenario:
                 f"{len(self.start.poses)} poses for {len(robots)} robots",
                 "one [x, y, heading_deg] for each robot, in order of id",
             )
-        if self.planner.inflation < self.robot.radius:
+        widest, whose = self._widest()
+        if self.planner.inflation < widest:
             yield Problem(
                 "planner.inflation",
-                f"{self.planner.inflation} m is less than robot.radius {self.robot.radius} m",
+                f"{self.planner.inflation} m is less than {whose} {widest} m",
                 "at least the radius",
             )
         if self.planner.kind == "path":
@@ -107,6 +118,11 @@ class Scenario:
                     f"robot {strangers[0]} is not in the team",
                     f"ids of the team: {', '.join(map(str, robots))}",
                 )
+
+    def _widest(self) -> tuple[float, str]:
+        """The largest radius of a robot [m], and its key."""
+        own = [(one.body.radius or 0.0, f"robots[{n}].body.radius") for n, one in enumerate(self.robots)]
+        return max([(self.robot.radius, "robot.radius"), *own], key=lambda one: one[0])
 
     def _robot_problems(self) -> Iterator[Problem]:
         team, seen = self.team.robots, set[int]()
@@ -127,11 +143,12 @@ class Scenario:
         path, start, goal = self.planner.path, self.start, self.goal
         starts = start.poses or ((start.x, start.y, 0.0),)
         away = min(math.dist(path[0], place[:2]) for place in starts)
-        if away > self.robot.laser_range:
+        sight = min(body.laser_range for body in self.bodies)
+        if away > sight:
             yield Problem(
                 "planner.path",
                 f"its first point is {away:.1f} m from the start",
-                f"at most robot.laser_range, {self.robot.laser_range} m",
+                f"at most the laser_range of every robot, {sight} m",
             )
         away, least = math.dist(path[-1], (goal.x, goal.y)), PATH_END * goal.tolerance
         if away > least:

@@ -86,21 +86,39 @@ class GoalSection:
     tolerance: Annotated[float, Range(1e-3, 1e3)] = 0.5
 
 
+Radius = Annotated[float, Range(0.01, 10.0)]
+Speed = Annotated[float, Range(0.01, 100.0)]
+TurnRate = Annotated[float, Range(0.01, 100.0)]
+LaserRange = Annotated[float, Range(0.1, 1e3)]
+LaserBeams = Annotated[int, Range(2, 10_000)]
+Field = Annotated[float, Range(1.0, 270.0)]
+Noise = Annotated[float, Range(0.0, 100.0)]
+"""Numbers of a body: [m], [m/s], [rad/s], [m], beams, [degrees], [m] or [degrees]."""
+
+NOISE_SIGMAS = 4.0
+"""Noise of sensors is held within so many standard deviations: one draw in 16,000 would lie beyond."""
+
+
 @dataclass(frozen=True, slots=True)
 class RobotSection:
-    """Body and sensors, the same for all robots (thesis 3.1).
+    """Body and sensors of all robots (thesis 3.1) but for what [[robots]] says of single ones.
 
     radius: of the disc that collides [m]. leader_speed: V_L [m/s]. max_speed: of followers [m/s].
     max_turn_rate [rad/s]. laser_*: 2-D range finder ahead (thesis 3.2, 3.4).
+    pose_noise, heading_noise_deg, laser_noise: standard deviations of what a robot is told, drawn anew
+    at every tick: of x and of y [m], of the heading [degrees], of each range that hits something [m].
     """
 
-    radius: Annotated[float, Range(0.01, 10.0)] = 0.2
-    leader_speed: Annotated[float, Range(0.01, 100.0)] = 1.0
-    max_speed: Annotated[float, Range(0.01, 100.0)] = 3.0
-    max_turn_rate: Annotated[float, Range(0.01, 100.0)] = 3.0
-    laser_range: Annotated[float, Range(0.1, 1e3)] = 10.0
-    laser_beams: Annotated[int, Range(2, 10_000)] = 181
-    laser_fov_deg: Annotated[float, Range(1.0, 270.0)] = 180.0
+    radius: Radius = 0.2
+    leader_speed: Speed = 1.0
+    max_speed: Speed = 3.0
+    max_turn_rate: TurnRate = 3.0
+    laser_range: LaserRange = 10.0
+    laser_beams: LaserBeams = 181
+    laser_fov_deg: Field = 180.0
+    pose_noise: Noise = 0.0
+    heading_noise_deg: Noise = 0.0
+    laser_noise: Noise = 0.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -105,8 +105,9 @@ def run_trial(scenario: Scenario, walls: WallMap) -> Trial:
     scenario = _alone(scenario)
     robot = scenario.team.robots[0]
     poses = start_poses(scenario, walls)
-    laser = Laser(walls, scenario.robot)
-    motion = Motion(walls, scenario.robot, scenario.clock.period_ns)
+    body = scenario.body_of(robot)
+    laser = Laser(walls, body)
+    motion = Motion(walls, [body], scenario.clock.period_ns)
     rng = generator(scenario.seed, f"robot/{robot}/0")
     finder = make_pathfinder(robot_briefing(scenario, robot, 0), _pose(poses), rng)
     record, contacts, path = _Record(finder), 0, [poses[0].copy()]

@@ -20,10 +20,12 @@ from radio_proxy.core.corruption import Corrupter
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.eavesdropper import Eavesdropper
 from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.fast_fading import fast_fading
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.link_layer import LinkLayer
+from radio_proxy.core.link_rules import link_rules
 from radio_proxy.core.nic import Nic
 from radio_proxy.core.propagation import Propagation
 from radio_proxy.core.routing.direct import DirectRouter
@@ -51,8 +53,11 @@ class Radio:
             fast_fading(section, seed),
         )
         self._corrupter = Corrupter(generator(briefing.seed, "faults"))
-        self._deliveries = Deliveries(self._corrupter)
-        self._link = LinkLayer(robots, section, self._propagation, self._draws, self._deliveries)
+        self._eavesdropper = _eavesdropper(briefing, robots, self._propagation)
+        self._deliveries = Deliveries(self._corrupter, self._eavesdropper)
+        self._link = LinkLayer(
+            robots, section, self._propagation, self._draws, self._deliveries, self._eavesdropper
+        )
         self._events = self._link.events
         self._nics: dict[RobotId, tuple[Nic, Router]] = {}
         self._incarnations: tuple[tuple[int, int], ...] = ()
@@ -140,6 +145,16 @@ class Radio:
             self._deliveries.drop(data, DeliveryStatus.RECEIVER_GONE)
         else:
             self._nics[robot][1].submit(data, now)
+
+
+def _eavesdropper(
+    briefing: RadioBriefing, robots: tuple[RobotId, ...], propagation: Propagation
+) -> Eavesdropper | None:
+    """What listens for the cards of a mission, if they tell whom they hear."""
+    if not briefing.radio.neighbours:
+        return None
+    draws = Draws(generator(briefing.seed, "radio/neighbours"))
+    return Eavesdropper(robots, propagation, link_rules(briefing.radio), draws)
 
 
 def _router(nic: NicServices, section: RadioSection, now: int) -> Router:

@@ -60,13 +60,13 @@ class ViewerChannels:
             s: max(1, round(s * 1e9 / log.period_ns)) for s in (POSE_S, SCAN_S, LINK_S, BODY_S)
         }
         self._walls = load_map(scenario.map, log.bundle.files).segments
-        self._radius = scenario.robot.radius
+        bodies = dict(zip(log.robots, scenario.bodies, strict=True))
+        self._radii = {robot: body.radius for robot, body in bodies.items()}
         self._colours = robot_colours(log.robots)
-        beams = Beams(scenario.robot)
-        self._angles = beams.angles
-        self._directions = beams.directions.astype(np.float32)
+        self._beams = {robot: Beams(body) for robot, body in bodies.items()}
         self._shapes = {
-            robot: points.body_shape(self._radius, colour) for robot, colour in self._colours.items()
+            robot: points.body_shape(self._radii[robot], colour)
+            for robot, colour in self._colours.items()
         }
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
@@ -140,7 +140,7 @@ class ViewerChannels:
         for robot, pose in placed:
             self._put(f"/{robot_name(robot)}/pose", tick, scene.pose_in_map(stamp, pose))
         if gone or came or tick % self._strides[BODY_S] == 0:
-            discs = scene.bodies(stamp, sorted(poses), self._radius, self._colours, gone)
+            discs = scene.bodies(stamp, sorted(poses), self._radii, self._colours, gone)
             self._put("/robots/bodies", tick, discs)
         rings = points.body_points(placed, self._shapes)
         self._put("/robots/points", tick, scene.cloud(stamp, scene.MAP, rings))
@@ -152,16 +152,13 @@ class ViewerChannels:
             message = wire.get(topics.obs(robot))
             if message is None:
                 continue
-            ranges = value_of(Observation, message).scan
-            if len(ranges) != len(self._angles):
+            ranges, beams = value_of(Observation, message).scan, self._beams[robot]
+            if len(ranges) != len(beams.angles):
                 raise DecodeError(f"tick {tick}, {message.key}: a scan of {len(ranges)} beams")
             name = robot_name(robot)
-            self._put(
-                f"/{name}/scan_points",
-                tick,
-                scene.scan_points(stamp, robot, ranges, self._directions),
-            )
-            self._put(f"/{name}/scan", tick, scene.laser_scan(stamp, robot, ranges, self._angles))
+            hits = scene.scan_points(stamp, robot, ranges, beams.directions.astype(np.float32))
+            self._put(f"/{name}/scan_points", tick, hits)
+            self._put(f"/{name}/scan", tick, scene.laser_scan(stamp, robot, ranges, beams.angles))
 
     def _add_links(
         self, tick: int, stamp: int, actions: dict[int, Action], poses: dict[int, Pose]
