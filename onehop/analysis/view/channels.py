@@ -12,16 +12,15 @@ from mcap.writer import Writer
 
 from onehop.analysis.log import Log
 from onehop.analysis.palette import robot_colours
+from onehop.analysis.told import Gravity, events
 from onehop.analysis.view import points, scene
 from onehop.analysis.view.schemas import Log as TextLog
 from onehop.analysis.view.schemas import schema_of
 from onehop.contracts import topics
 from onehop.contracts.beams import Beams
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.fault_section import fault_in_words
 from onehop.contracts.geometry import Pose
-from onehop.contracts.messages import Action, Inbox, Note, Observation, Truth
-from onehop.contracts.printable import printable
+from onehop.contracts.messages import Action, Inbox, Observation, Truth
 from onehop.contracts.topics import robot_name
 from onehop.maps.map_file import load_map
 from onehop.wire.log_reader import LoggedTick
@@ -39,20 +38,15 @@ WALL_STEP = 0.25
 FARTHEST = 1e9
 """No map reaches so far [m]; clouds of points are float32."""
 
-MOST_EVENTS = 100
-"""Notes of one robot and tick that are shown: a team has a few."""
-
 MOST_VALUES = 32
 """Values of a robot that are shown; the world takes no more."""
 
 _LEVELS = {
-    "lost_leader": TextLog.WARNING,
-    "lost_follower": TextLog.WARNING,
-    "no_way": TextLog.ERROR,
-    "target": TextLog.DEBUG,
-    "mode": TextLog.DEBUG,
+    Gravity.DEBUG: TextLog.DEBUG,
+    Gravity.INFO: TextLog.INFO,
+    Gravity.WARNING: TextLog.WARNING,
+    Gravity.ERROR: TextLog.ERROR,
 }
-"""How grave a kind of note is; anything else is information."""
 
 
 class ViewerChannels:
@@ -104,7 +98,9 @@ class ViewerChannels:
         }
         if tick % self._strides[LINK_S] == 0:
             self._add_links(tick, stamp, actions, poses)
-        self._add_events(tick, stamp, actions, truth)
+        for told in events(truth, actions):
+            level = _LEVELS[told.gravity]
+            self._put("/events", tick, scene.event(stamp, told.who, told.text, level))
 
     def _poses(self, truth: Truth) -> dict[int, Pose]:
         for one in truth.present:
@@ -189,23 +185,3 @@ class ViewerChannels:
             best = 2.0 * status.threshold_bps
             links.append((leader, pose, status.throughput_bps / best if best > 0 else 1.0))
         self._put("/links/points", tick, scene.cloud(stamp, scene.MAP, points.link_points(links)))
-
-    def _add_events(self, tick: int, stamp: int, actions: dict[int, Action], truth: Truth) -> None:
-        for fault in truth.faults:
-            text = printable(f"fault: {fault_in_words(fault)}")
-            self._put("/events", tick, scene.event(stamp, topics.WORLD, text, TextLog.WARNING))
-        for one in truth.departures:
-            text = printable(f"gone, {one.why}")
-            self._put("/events", tick, scene.event(stamp, robot_name(one.robot), text, TextLog.WARNING))
-        for robot, action in sorted(actions.items()):
-            for note in action.notes[:MOST_EVENTS]:
-                level = _LEVELS.get(note.kind, TextLog.INFO)
-                self._put("/events", tick, scene.event(stamp, robot_name(robot), _text(note), level))
-
-
-def _text(note: Note) -> str:
-    details = ", ".join(
-        f"{key} {value:.2f}" if isinstance(value, float) else f"{key} {value}"
-        for key, value in note.data.items()
-    )
-    return printable(f"{note.kind.replace('_', ' ')}{': ' if details else ''}{details}")
