@@ -59,11 +59,22 @@ def figure_of(log: Log, tables: dict[str, Table]) -> Figure:
 
 
 def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
+    colours = robot_colours(log.robots)
+    draw_mission(axes, log, tables)
+    gone = departures(tables["poses"], tables["departures"])
+    faults = begun_faults(tables["faults"])[:MOST_FAULTS]
+    axes.legend(
+        handles=_legend(log, gone, faults, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
+        frameon=False, fontsize=9, borderaxespad=0.0,
+    )  # fmt: skip
+    axes.set_title(_title(log), loc="left", fontsize=11)
+
+
+def draw_mission(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
+    """Map, paths, formations and what went wrong, without title and legend."""
     poses, status = tables["poses"], tables["status"]
     colours = robot_colours(log.robots)
-    gone = departures(poses, tables["departures"])
     draw_ground(axes, log.bundle, tables["jams"])
-    faults = begun_faults(tables["faults"])[:MOST_FAULTS]
     for robot, colour in colours.items():
         carried = [
             tick
@@ -73,16 +84,11 @@ def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
         _draw_path(axes, poses.of(robot), carried, colour)
     _draw_formations(axes, poses, status, colours)
     _draw_holds(axes, poses, colours)
-    for departure in gone:
+    for departure in departures(poses, tables["departures"]):
         _draw_departure(axes, departure, colours[departure.robot])
     for x, y in zip(tables["contacts"]["x"], tables["contacts"]["y"], strict=True):
         axes.plot(x, y, marker="P", color=BAD, markersize=7, zorder=8)
     _draw_leaders(axes, poses, leadership(status, tables["departures"], log.period_ns).main, colours)
-    axes.legend(
-        handles=_legend(log, gone, faults, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
-        frameon=False, fontsize=9, borderaxespad=0.0,
-    )  # fmt: skip
-    axes.set_title(_title(log), loc="left", fontsize=11)
 
 
 def _tables(log: Log) -> dict[str, Table]:

@@ -67,7 +67,7 @@ def sweep(
     first, seeds = how_many.first_seed, how_many.seeds
     base = scenario_file.load(scenario, settings)
     varied = cells(scenario, settings, [axis(text) for text in over], first)
-    wanted = Wanted(base, varied, range(first, first + seeds), keep, how_many.processes)
+    wanted = Wanted([base], varied, range(first, first + seeds), keep, how_many.processes)
     folder = out or Path("runs") / f"sweep-{time.strftime('%Y%m%d-%H%M%S')}"
     if importlib.util.find_spec("polars") is None:
         say(f"{folder / ROWS} alone is written. {NO_PARQUET}")
