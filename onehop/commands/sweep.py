@@ -44,10 +44,11 @@ class _Shown(NamedTuple):
 _TABLES = (
     (
         _Shown("lost", "lost"), _Shown("sim_s", "time s"), _Shown("error_m", "error m"),
-        _Shown("collisions", "contacts"),
+        _Shown("drive_j", "driving kJ", 1e3), _Shown("collisions", "contacts"),
     ),
     (
         _Shown("throughput_bps", "throughput kb/s", 1e3), _Shown("below_threshold_s", "below s"),
+        _Shown("connected_share", "connected %", 0.01), _Shown("radio_j", "card J"),
         _Shown("delay_ms", "delay ms"), _Shown("routing_bytes", "routing kB", 1e3),
     ),
 )  # fmt: skip
