@@ -70,8 +70,11 @@ def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
     axes.set_title(_title(log), loc="left", fontsize=11)
 
 
-def draw_mission(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
-    """Map, paths, formations and what went wrong, without title and legend."""
+def draw_mission(axes: Axes, log: Log, tables: dict[str, Table], name_holds: bool = True) -> None:
+    """Map, paths, formations and what went wrong, without title and legend.
+
+    name_holds: say who is held beside each mark.
+    """
     poses, status = tables["poses"], tables["status"]
     colours = robot_colours(log.robots)
     draw_ground(axes, log.bundle, tables["jams"])
@@ -83,7 +86,7 @@ def draw_mission(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
         ]
         _draw_path(axes, poses.of(robot), carried, colour)
     _draw_formations(axes, poses, status, colours)
-    _draw_holds(axes, poses, colours)
+    _draw_holds(axes, poses, colours, name_holds)
     for departure in departures(poses, tables["departures"]):
         _draw_departure(axes, departure, colours[departure.robot])
     for x, y in zip(tables["contacts"]["x"], tables["contacts"]["y"], strict=True):
@@ -169,7 +172,7 @@ def _draw_robot(axes: Axes, here: Table, row: int, colour: str) -> None:
     )  # fmt: skip
 
 
-def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str]) -> None:
+def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str], named: bool) -> None:
     for robot, colour in colours.items():
         own = poses.of(robot)
         begins = np.flatnonzero(np.diff(own["held"].astype(np.int8), prepend=0) == 1)
@@ -178,6 +181,8 @@ def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str]) -> None:
                 own["x"][row], own["y"][row], marker="s", markersize=11, markerfacecolor="none",
                 markeredgecolor=colour, markeredgewidth=1.8, zorder=7,
             )  # fmt: skip
+            if not named:
+                continue
             axes.annotate(
                 f"{robot} held, {own['time_s'][row]:.0f} s", (own["x"][row], own["y"][row]),
                 textcoords="offset points", xytext=(9, -12), fontsize=8, color=INK, zorder=9,

@@ -15,6 +15,7 @@ from onehop.commands.progress import ProgressLine
 from onehop.mission.stops import Stopped
 from onehop.scenario import scenario_file
 from onehop.study.grid import axis, cells
+from onehop.study.in_words import interval
 from onehop.study.mission import DIFFERS, FAILED, Keep
 from onehop.study.sweeping import ROWS, Sweep, Wanted
 from onehop.wire.output_folder import held
@@ -167,16 +168,4 @@ def _print_differences(
 
 def _in_words(row: dict[str, Any], shown: _Shown) -> str:
     mean, (low, high) = row[f"{shown.name}_mean"], row[f"{shown.name}_ci95"]
-    if mean is None:
-        return "-"
-    if low is None:
-        return _number(mean / shown.scale)
-    low, high = (_number(end / shown.scale) for end in (low, high))
-    return f"{_number(mean / shown.scale)} [{low}, {high}]"
-
-
-def _number(value: float) -> str:
-    """Three digits that count, and no powers of ten."""
-    if abs(value) >= 100.0:
-        return f"{value:.0f}"
-    return f"{round(value, 3):z.3g}"
+    return interval(mean, low, high, shown.scale)

@@ -7,7 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from onehop.campaign.lines import Row
-from onehop.contracts.messages import Action, Carriage, Status
+from onehop.contracts.messages import Action, Carriage
+from onehop.contracts.team import Status
 from onehop.drivers import inline
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle

@@ -6,7 +6,6 @@ in two.
 
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -14,12 +13,14 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from onehop.analysis.log import Log
-from onehop.analysis.palette import FAINT, INK
+from onehop.analysis.palette import BAD, FAINT, INK
 from onehop.analysis.report.canvas import save, styled
 from onehop.analysis.report.follower_chart import (
     BER_FLOOR,
+    ROLLING_S,
     Series,
     of_next,
+    rolling_mean,
     snr,
     thesis_bit_errors,
     throughput,
@@ -30,6 +31,7 @@ from onehop.study.chapter4.claims import ROUTING_WORD
 from onehop.study.chapter4.missions import CONSTANT, VARIABLE
 from onehop.study.chapter4.reported import REPORTED
 from onehop.study.chapter4.shown import Place
+from onehop.study.page import Picture
 from radio_proxy.core.error_rates import thesis_ber
 from radio_proxy.core.link_budget import link_budget
 
@@ -41,14 +43,6 @@ _ROW_HEIGHT = 1.75
 
 _BIN_DB = 1.0
 """Width of a step of received power [dB]."""
-
-
-class Picture(NamedTuple):
-    """One figure. path: its PNG; the SVG has the same stem."""
-
-    title: str
-    note: str
-    path: Path
 
 
 Reports = Mapping[str, ReportData]
@@ -75,12 +69,13 @@ def draw(shown: Mapping[Place, Mapping[str, Log]], folder: Path) -> Iterator[Pic
 
 _EXECUTIONS = (
     "Left constant, right variable k_rho, along the same way of the leader. Squares: where followers "
-    "were held. Crosses: robots that were lost. Every 20 s the formation is drawn."
+    "were held. Crosses: where lost robots were last. Every 20 s the formation is drawn."
 )
 _LINKS = (
-    "Each row a follower; orange constant, blue variable k_rho, over each other. Grey: the followers "
-    "are held. Dashed: the receive threshold of 32 dB, and the throughput below which a follower "
-    "hurries. A line ends where the robot is lost; throughput 0 is a Next that did not come."
+    "Each row a follower; orange constant, blue variable k_rho, over each other. Thin: each value; "
+    f"thick: its mean over {ROLLING_S:g} s. Grey: the followers are held. Dashed: the receive threshold "
+    "of 32 dB, and the throughput below which a follower hurries. A line ends where the robot is lost; "
+    "throughput 0 is a Next that did not come."
 )
 _BER = (
     "The bit error rate of eq. 3.24 and 3.25, read literally, of each Next that came: the thesis's own "
@@ -94,7 +89,8 @@ def executions(reports: Reports) -> Figure:
     figure = Figure(figsize=(13.0, 6.9), layout="constrained")
     for axes, (policy, report) in zip(figure.subplots(1, 2), reports.items(), strict=True):
         axes.grid(visible=False)
-        draw_mission(axes, report.log, report.tables)
+        draw_mission(axes, report.log, report.tables, name_holds=False)
+        _mark_lost(axes, report)
         axes.set_title(f"{NAMES[policy]}: {_ending(report)}", loc="left", fontsize=10)
     handles = [
         Line2D([], [], color=colour, linewidth=2.5, label=f"robot {robot}")
@@ -104,10 +100,28 @@ def executions(reports: Reports) -> Figure:
     return figure
 
 
-def _ending(report: ReportData) -> str:
+def _mark_lost(axes: Axes, report: ReportData) -> None:
+    """A cross where a robot of those that were lost was last."""
+    for robot in _lost(report):
+        own = report.tables["poses"].of(robot)
+        if len(own):
+            spot = float(own["x"][-1]), float(own["y"][-1])
+            axes.plot(*spot, marker="x", markersize=11, color=BAD, markeredgewidth=3.0, zorder=10)
+            axes.annotate(
+                f"{robot} lost", spot, textcoords="offset points", xytext=(9, -12), fontsize=9,
+                fontweight="bold", color=BAD, zorder=10,
+            )  # fmt: skip
+
+
+def _lost(report: ReportData) -> list[int]:
     summary = report.log.summary or {}
-    lost = ", ".join(str(one["robot"]) for one in summary.get("lost", ()))
-    return f"{f'robots {lost} lost' if lost else 'nobody lost'}, {summary.get('sim_s', 0):.0f} s"
+    return [one["robot"] for one in summary.get("lost", ())]
+
+
+def _ending(report: ReportData) -> str:
+    lost, sim_s = _lost(report), (report.log.summary or {}).get("sim_s", 0.0)
+    who = f"robot{'s' if len(lost) > 1 else ''} {', '.join(map(str, lost))} lost"
+    return f"{who if lost else 'nobody lost'}, {sim_s:.0f} s"
 
 
 def links(reports: Reports) -> Figure:
@@ -122,7 +136,7 @@ def links(reports: Reports) -> Figure:
         for axes, (name, values) in zip(row, panels, strict=True):
             _shade_holds(axes, reports)
             for policy, report in reports.items():
-                _line(axes, values(report, robot), COLOURS[policy])
+                _line(axes, values(report, robot), COLOURS[policy], smooth=values is not hops)
             axes.set_title(name if robot == followers[0] else "", fontsize=10)
         row[0].set_ylabel(f"robot {robot}", fontweight="bold")
         _threshold(row[0], _receive_threshold_db(reports))
@@ -142,9 +156,11 @@ def bit_errors(reports: Reports) -> Figure:
     for row, robot in zip(grid, followers, strict=True):
         _shade_holds(row[0], reports)
         for policy, report in reports.items():
-            _line(row[0], thesis_bit_errors(report, robot), COLOURS[policy])
+            _line(row[0], thesis_bit_errors(report, robot), COLOURS[policy], smooth=False)
         row[0].set_yscale("log")
         row[0].set_ylim(BER_FLOOR, 1.0)
+        row[0].set_yticks([1e-6, 1e-4, 1e-2, 1.0], ["1e-6", "1e-4", "1e-2", "1"])
+        row[0].minorticks_off()
         row[0].set_ylabel(f"robot {robot}", fontweight="bold")
         _against_power(row[1], reports, robot)
     grid[0][0].set_title("BER of Next (eq. 3.25) against time", fontsize=10)
@@ -157,7 +173,7 @@ def bit_errors(reports: Reports) -> Figure:
 
 def hops(report: ReportData, robot: int) -> Series:
     """Of each Next that came."""
-    return of_next(report, robot, lambda trace: len(trace.path) - 1)
+    return of_next(report, robot, lambda trace: float(len(trace.path) - 1))
 
 
 def _against_power(axes: Axes, reports: Reports, robot: int) -> None:
@@ -181,7 +197,7 @@ def _against_power(axes: Axes, reports: Reports, robot: int) -> None:
         if len(values):
             weights = np.full(len(values), 100.0 / len(values))
             shares.hist(
-                values, bins=np.arange(low, high + _BIN_DB, _BIN_DB), weights=weights,
+                values, bins=np.arange(low, high + _BIN_DB, _BIN_DB).tolist(), weights=weights,
                 histtype="step", color=COLOURS[policy], linewidth=1.3,
             )  # fmt: skip
     shares.set_ylabel("share [%]", fontsize=8)
@@ -195,8 +211,14 @@ def _followers(reports: Reports) -> list[int]:
     return [robot for robot in report.robots if robot != first]
 
 
-def _line(axes: Axes, series: Series, colour: str) -> None:
-    axes.plot(*series, color=colour, linewidth=1.0, alpha=0.85, marker=".", markersize=2.0)
+def _line(axes: Axes, series: Series, colour: str, smooth: bool) -> None:
+    """smooth: the values thin, and their mean over some seconds thick above them."""
+    times, values = series
+    axes.plot(
+        times, values, color=colour, linewidth=0.7 if smooth else 1.1, alpha=0.4 if smooth else 0.9
+    )
+    if smooth and len(times):
+        axes.plot(times, rolling_mean(times, values), color=colour, linewidth=1.6)
 
 
 def _shade_holds(axes: Axes, reports: Reports) -> None:

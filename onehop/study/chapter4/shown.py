@@ -21,7 +21,7 @@ Place = tuple[str, str]
 def typical_seed(rows: Sequence[Row], place: Place) -> int:
     """The first seed that loses as many robots, under constant and under variable k_rho, as most do."""
     ground, routing = place
-    lost = {
+    lost: dict[str, dict[int, int]] = {
         policy: {
             row["seed"]: row["lost"]
             for row in chosen(rows, {"map": ground, "routing": routing, "policy": policy})

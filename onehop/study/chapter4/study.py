@@ -14,76 +14,39 @@ from onehop import __version__
 from onehop.campaign.collection import Collection, Crashed, Order
 from onehop.campaign.lines import Row
 from onehop.campaign.workers import Run
-from onehop.study.chapter4 import failing, missions, ways
-from onehop.study.chapter4.claims import (
-    TO_MRSR,
-    TO_VARIABLE,
-    ideal_claim,
-    policy_claims,
-    routing_claims,
-)
-from onehop.study.claims import Judgement
-from onehop.study.comparison import chosen, strata
+from onehop.study.chapter4 import failing, figures, missions, page, shown, way_figures, ways
+from onehop.study.chapter4.found import Found
 from onehop.study.grid import Cell
-from onehop.study.parts import Announce, cell, changed
-from onehop.study.sweeping import Sweep, Wanted
+from onehop.study.parts import Announce
+from onehop.study.sweeping import TABLE, Sweep, Wanted
 from onehop.wire.output_folder import explained
 
-SUMMARY = "study.json"
+SUMMARY, PAGE, FIGURES, LOGS = "study.json", "thesis.html", "figures", "logs"
+
+DELAYED = "delayed"
+
+PARTS = {
+    DELAYED: "4.2, followers delayed",
+    "undelayed": "4.2, nobody delayed",
+    "bounds": "4.2, perfect link and no link",
+    "ways": "4.1, leaders alone",
+    "failing": "4.3, robots that fail",
+}
+"""Name of each part in the folder, and for people."""
 
 
 @dataclass(frozen=True, slots=True)
 class Asked:
-    """What is to be studied. scenarios: the folder of the missions. seeds: of every cell."""
+    """What is to be studied. scenarios: folder of the missions. seeds: of each of the twelve cells."""
 
     scenarios: Path
     settings: Sequence[str]
     seeds: range
 
-
-@dataclass(slots=True)
-class Found:
-    """Rows of each part, as far as they have been run."""
-
-    delayed: list[Row]
-    undelayed: list[Row]
-    bounds: list[Row]
-    ways: list[Row]
-    failing: list[Row]
-
-    def judgements(self) -> list[Judgement]:
-        """Every claim of chapter 4, and what came of it."""
-        found = [*policy_claims(self.delayed), *routing_claims(self.delayed)]
-        found.append(ideal_claim(self.undelayed))
-        found.append(ways.way_claim(self.ways))
-        return [*found, *failing.failing_claims(self.failing)]
-
-    def cells(self) -> list[dict[str, Any]]:
-        """The cells of 4.2."""
-        return _cells(self.delayed, "map", "routing", "policy")
-
-    def bound_cells(self) -> list[dict[str, Any]]:
-        """The same missions with a perfect link, and with none."""
-        return _cells(self.bounds, "map", "link")
-
-    def differences(self) -> list[dict[str, Any]]:
-        """From constant to variable k_rho, and from MRDV to MRSR, in each cell and over all of them."""
-        rows = self.delayed
-        found = []
-        for key, (before, after), others in (
-            ("policy", TO_VARIABLE, ("map", "routing")),
-            ("routing", TO_MRSR, ("map", "policy")),
-        ):
-            every = strata(rows, *others)
-            names = {"key": key, "against": before[key], key: after[key]}
-            found += [changed({**names, **one}, rows, before, after, [one]) for one in every]
-            all_of_them = dict.fromkeys(others, "all")
-            found.append(changed({**names, **all_of_them}, rows, before, after, every))
-        return found
-
-
-def _cells(rows: Sequence[Row], *keys: str) -> list[dict[str, Any]]:
-    return [cell(where, chosen(rows, where)) for where in strata(rows, *keys)]
+    @property
+    def fewer(self) -> range:
+        """The first quarter of the seeds: for what is only laid beside the twelve cells."""
+        return self.seeds[: max(2, len(self.seeds) // 4)]
 
 
 class ThesisStudy:
@@ -96,61 +59,73 @@ class ThesisStudy:
         self._announce = announce
         self._bases = missions.bases(asked.scenarios, asked.settings)
         self._rate = {"missions_per_s": 0.0, "sim_s_per_s": 0.0}
-        self.found = Found([], [], [], [], [])
+        self.found = Found()
         self.crashed: list[Crashed] = []
+        self.page: Path | None = None
         self.summary: dict[str, Any] | None = None
 
     def run(self) -> dict[str, Any]:
         """Run what the folder lacks, and give the summary. Raises InputError."""
         asked, found = self._asked, self.found
         try:
-            self._sweep("4.2, followers delayed", "delayed", missions.delayed, found.delayed)
-            self._sweep("4.2, nobody delayed", "undelayed", missions.undelayed, found.undelayed)
-            self._sweep("bounds", "bounds", missions.bounds, found.bounds)
+            self._sweep(DELAYED, missions.delayed, asked.seeds, found.delayed)
+            self._sweep("undelayed", missions.undelayed, asked.fewer, found.undelayed)
             alone = list(ways.orders(asked.scenarios, asked.seeds))
-            self._collect("4.1, leaders alone", "ways.jsonl", ways.run_way, alone, found.ways)
-            dying = list(failing.orders(asked.scenarios, asked.seeds))
-            self._collect(
-                "4.3, robots that fail", "failing.jsonl", failing.run_failing, dying, found.failing
-            )
+            self._collect("ways", ways.run_way, alone, found.ways)
+            dying = list(failing.orders(asked.scenarios, asked.fewer))
+            self._collect("failing", failing.run_failing, dying, found.failing)
         finally:
             self.summary = self._told()
         return self.summary
 
+    def draw(self) -> Path:
+        """Draw the figures and write the page; gives the page. Raises InputError, MissionError."""
+        asked, found = self._asked, self.found
+        folder = self._folder / FIGURES
+        with explained(folder, "a folder that can be written"):
+            folder.mkdir(exist_ok=True)
+        cells = missions.delayed(asked.scenarios, asked.settings, asked.seeds[0])
+        logs = shown.logs(cells, found.delayed, self._folder / LOGS, self._workers)
+        pictures = way_figures.draw(asked.scenarios, found.ways, folder)
+        pictures += figures.draw(logs, folder)
+        self.page = self._folder / PAGE
+        self.summary = self._told()
+        page.write(found, self.summary, pictures, asked.seeds, self.page)
+        return self.page
+
     def _sweep(
         self,
         part: str,
-        name: str,
         cells: Callable[[Path, Sequence[str], int], list[Cell]],
+        seeds: range,
         rows: list[Row],
     ) -> None:
         """Run one sweep in a folder of its own; rows gets what there is, whatever ends it."""
-        asked, folder = self._asked, self._folder / name
+        asked, folder = self._asked, self._folder / part
         with explained(folder, "a folder that can be written"):
             folder.mkdir(exist_ok=True)
-        varied = cells(asked.scenarios, asked.settings, asked.seeds[0])
-        wanted = Wanted(list(self._bases.values()), varied, asked.seeds)
-        sweep = Sweep(wanted, folder, self._workers, self._announce(part, wanted.total))
+        varied = cells(asked.scenarios, asked.settings, seeds[0])
+        wanted = Wanted(list(self._bases.values()), varied, seeds)
+        sweep = Sweep(wanted, folder, self._workers, self._announce(PARTS[part], wanted.total))
         try:
             sweep.run()
         finally:
             rows += sweep.rows
             self.crashed += sweep.crashed
-            if name == "delayed" and sweep.summary is not None:
+            if part == DELAYED and sweep.summary is not None:
                 self._rate = {key: sweep.summary[key] for key in self._rate}
 
     def _collect(
         self,
         part: str,
-        name: str,
         work: Callable[[Any], Row],
         orders: Sequence[Order],
         rows: list[Row],
     ) -> None:
         """Run a part that is no sweep, with a file of its own."""
         about = {"onehop": __version__, "part": part}
-        listener = self._announce(part, len(orders))
-        collection = Collection(self._folder / name, about, self._workers, listener)
+        listener = self._announce(PARTS[part], len(orders))
+        collection = Collection(self._folder / f"{part}.jsonl", about, self._workers, listener)
         try:
             collection.run(work, orders)
         finally:
@@ -165,11 +140,12 @@ class ThesisStudy:
             "missions": len(found.delayed),
             "wanted": twelve * len(asked.seeds),
             **self._rate,
-            "table": str(self._folder / "delayed" / "missions.parquet"),
+            "table": str(self._folder / DELAYED / TABLE),
             "cells": found.cells(),
             "bounds": found.bound_cells(),
             "differences": found.differences(),
             "claims": [one.as_json() for one in found.judgements()],
+            "page": None if self.page is None else str(self.page),
             "crashed": [{"mission": one.name, "why": one.why} for one in self.crashed],
         }
         path = self._folder / SUMMARY
