@@ -1,12 +1,13 @@
 """`onehop study`: chapter 4 of the thesis again, and where a gain policy matters."""
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from rich.console import Console
 
+from onehop.campaign.collection import Crashed
 from onehop.campaign.lines import Row
 from onehop.campaign.workers import workers
 from onehop.commands.output import emit_json, stdout, table
@@ -15,6 +16,9 @@ from onehop.mission.stops import Stopped
 from onehop.study.chapter4.study import Asked, ThesisStudy
 from onehop.study.in_words import told
 from onehop.study.page import measured
+from onehop.study.phase.grid import Grid
+from onehop.study.phase.page import in_short
+from onehop.study.phase.study import PolicyStudy
 from onehop.wire.output_folder import held
 
 
@@ -51,6 +55,19 @@ class Progress(ProgressLine):
         return f"{self._part}: {self.pace()}"
 
 
+class Study(Protocol):
+    """What both studies are. summary: None before they ran."""
+
+    summary: dict[str, Any] | None
+
+    @property
+    def crashed(self) -> list[Crashed]: ...
+
+    def run(self) -> dict[str, Any]: ...
+
+    def draw(self) -> Path: ...
+
+
 def thesis(
     scenarios: Path,
     settings: list[str],
@@ -60,10 +77,23 @@ def thesis(
     as_json: bool,
 ) -> int:
     """Chapter 4; returns the exit status."""
-    folder = out or _fresh("thesis")
+    folder, progress = out or _fresh("thesis"), Progress()
     asked = Asked(scenarios, settings, how_many.range)
-    with held(folder), Progress() as progress:
-        study = ThesisStudy(asked, folder, workers(how_many.jobs, dask), progress.announce)
+    study = ThesisStudy(asked, folder, workers(how_many.jobs, dask), progress.announce)
+    return _run(study, folder, progress, lambda: _tell_thesis(study, as_json))
+
+
+def policies(grid: Grid, how_many: HowMany, dask: str | None, out: Path | None, as_json: bool) -> int:
+    """The phase diagram; returns the exit status."""
+    folder, progress = out or _fresh("policies"), Progress()
+    seeds, run = how_many.range, workers(how_many.jobs, dask)
+    study = PolicyStudy(grid, seeds, folder, run, progress.announce)
+    return _run(study, folder, progress, lambda: _tell_policies(study, grid, as_json))
+
+
+def _run(study: Study, folder: Path, progress: Progress, tell: Callable[[], None]) -> int:
+    """Run a study and tell what it says, also if it is stopped."""
+    with held(folder), progress:
         try:
             study.run()
             progress.put("drawing figures …")
@@ -71,9 +101,9 @@ def thesis(
         except Stopped:
             progress.stop()
             if study.summary is not None:
-                _tell_thesis(study, as_json)
+                tell()
             raise
-    _tell_thesis(study, as_json)
+    tell()
     return 1 if study.crashed else 0
 
 
@@ -107,6 +137,19 @@ def _tell_thesis(study: ThesisStudy, as_json: bool) -> None:
     for one in study.found.judgements():
         made.add_row(one.claim.says, measured(one), str(one.seeds), str(one.verdict))
     console.print(made)
+    _print_rest(console, summary)
+
+
+def _tell_policies(study: PolicyStudy, grid: Grid, as_json: bool) -> None:
+    if as_json:
+        emit_json(study.summary or {})
+        return
+    console, summary = stdout(), study.summary or {}
+    _print_cells(console, "Every place", summary["cells"], ("k_rho_min", "hold_s", "policy"))
+    _print_cells(console, "Bounds", summary["bounds"], ("k_rho_min", "hold_s", "link"))
+    for policy in grid.policies[1:]:
+        short = in_short(grid, study.rows, policy)
+        console.print(f"{policy} against {grid.policies[0]}: {short}", markup=False)
     _print_rest(console, summary)
 
 

@@ -21,6 +21,6 @@ def interval(mean: float | None, low: float | None, high: float | None, scale: f
 
 
 def told(cell: Mapping[str, Any], name: str, scale: float = 1.0) -> str:
-    """A mean of a cell of a study (parts.py) with its interval."""
+    """A mean of a cell of a study (cell_summary.py) with its interval."""
     low, high = cell[f"{name.removesuffix('_mean')}_ci95"]
     return interval(cell[name], low, high, scale)

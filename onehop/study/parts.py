@@ -1,27 +1,18 @@
-"""What studies have in common: campaigns as their parts, and what a cell of missions says."""
+"""The parts of a study: campaigns one after the other, each with a place of its own in one folder."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, Protocol
 
+from onehop import __version__
+from onehop.campaign.collection import Collection, Crashed, Order
 from onehop.campaign.lines import Row
 from onehop.campaign.listener import Listener
-from onehop.study.comparison import LOST_ANY, Where, difference, mean
-from onehop.study.statistics import Estimate
-
-TOLD = {
-    "lost_mean": "lost",
-    "lost_any": LOST_ANY,
-    "throughput_mean_bps": "throughput_bps",
-    "below_threshold_s": "below_threshold_s",
-    "error_m": "error_m",
-    "ber_mean": "ber",
-    "overhead_bytes": "routing_bytes",
-    "delay_ms": "delay_ms",
-    "connected_share": "connected_share",
-    "drive_j": "drive_j",
-    "radio_j": "radio_j",
-}
-"""What `--json` says of a cell, and the measure of which it is the mean."""
+from onehop.campaign.workers import Run
+from onehop.scenario.bundle import Bundle
+from onehop.study.grid import Cell
+from onehop.study.sweeping import Sweep, Wanted
+from onehop.wire.output_folder import explained
 
 
 class Announce(Protocol):
@@ -30,24 +21,62 @@ class Announce(Protocol):
     def __call__(self, part: str, total: int) -> Listener: ...
 
 
-def cell(values: Where, rows: Sequence[Row]) -> dict[str, Any]:
-    """A cell as `--json` has it: its values, how many seeds, means and intervals."""
-    return {**values, "seeds": len(rows), **_told(lambda measure: mean(rows, measure))}
+class Parts:
+    """Runs the parts of a study. names: of each part, for people. crashed: what has no row, of all."""
 
+    def __init__(self, folder: Path, workers: Run, announce: Announce, names: Mapping[str, str]) -> None:
+        self._folder = folder
+        self._workers = workers
+        self._announce = announce
+        self._names = names
+        self.crashed: list[Crashed] = []
 
-def changed(
-    values: Mapping[str, Any], rows: Sequence[Row], before: Where, after: Where, strata: Sequence[Where]
-) -> dict[str, Any]:
-    """What changes from some missions to others, seed by seed, as `--json` has it."""
-    seeds = difference(rows, "lost", before, after, strata).seeds
-    told = _told(lambda measure: difference(rows, measure, before, after, strata).estimate)
-    return {**values, "seeds": seeds, **told}
+    def sweep(
+        self,
+        part: str,
+        bases: Sequence[Bundle],
+        cells: Sequence[Cell],
+        seeds: range,
+        rows: list[Row],
+        rate: dict[str, float] | None = None,
+    ) -> None:
+        """Run one sweep in a folder of its own, FOLDER/part.
 
+        rows and rate get the missions, and missions_per_s and sim_s_per_s, whatever ends it. Raises
+        InputError.
+        """
+        folder = self._folder / part
+        with explained(folder, "a folder that can be written"):
+            folder.mkdir(exist_ok=True)
+        wanted = Wanted(bases, cells, seeds)
+        sweep = Sweep(wanted, folder, self._workers, self._announce(self._names[part], wanted.total))
+        try:
+            sweep.run()
+        finally:
+            rows += sweep.rows
+            self.crashed += sweep.crashed
+            if rate is not None and sweep.summary is not None:
+                rate.update({key: sweep.summary[key] for key in ("missions_per_s", "sim_s_per_s")})
 
-def _told(estimate: "Any") -> dict[str, Any]:
-    found: dict[str, Any] = {}
-    for name, measure in TOLD.items():
-        one: Estimate = estimate(measure)
-        found[name] = one.mean
-        found[f"{name.removesuffix('_mean')}_ci95"] = [one.low, one.high]
-    return found
+    def collect(
+        self,
+        part: str,
+        about: Mapping[str, Any],
+        work: Callable[[Any], Row],
+        orders: Sequence[Order],
+        rows: list[Row],
+    ) -> None:
+        """Run what is no sweep, with a file of its own, FOLDER/part.jsonl.
+
+        about: what must be the same to go on with it. rows: get what was run, whatever ends it. Raises
+        InputError.
+        """
+        known = {"onehop": __version__, "part": part, **about}
+        listener = self._announce(self._names[part], len(orders))
+        collection = Collection(self._folder / f"{part}.jsonl", known, self._workers, listener)
+        try:
+            collection.run(work, orders)
+        finally:
+            place = {order.name: number for number, order in enumerate(orders)}
+            rows += sorted(collection.rows, key=lambda row: place[row["name"]])
+            self.crashed += collection.crashed

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from onehop.campaign.lines import Row
+from onehop.study.cell_summary import cell, changed
 from onehop.study.chapter4 import failing, ways
 from onehop.study.chapter4.claims import (
     TO_MRSR,
@@ -15,7 +16,6 @@ from onehop.study.chapter4.claims import (
 )
 from onehop.study.claims import Judgement
 from onehop.study.comparison import chosen, strata
-from onehop.study.parts import cell, changed
 
 
 @dataclass(slots=True)

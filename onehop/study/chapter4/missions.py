@@ -21,6 +21,9 @@ CONSTANT, VARIABLE = "constant", "throughput"
 
 POLICIES = (CONSTANT, VARIABLE)
 
+LINKS: tuple[str, ...] = ()
+"""`radio.link` of the bounds: every message arrives at once, and none does."""
+
 HOLD_AT_S = 60.0
 """4.2.1: "until second 60 when the delay period was imposed"."""
 
@@ -64,9 +67,9 @@ CHOICES = (
 HOLD = f'faults=[{{kind="hold", at_s={HOLD_AT_S:g}, robots={list(HELD)}, duration_s={HOLD_S:g}}}]'
 
 
-def bases(folder: Path, settings: Sequence[str]) -> dict[str, Bundle]:
+def bases(folder: Path, settings: Sequence[str]) -> list[Bundle]:
     """The mission of each map, held; settings come last. Raises InputError."""
-    return {name: scenario_file.load(path, _settings(settings)) for name, path in _paths(folder).items()}
+    return [scenario_file.load(path, _settings(settings)) for path in _paths(folder).values()]
 
 
 def _settings(settings: Sequence[str]) -> list[str]:
@@ -108,6 +111,21 @@ def undelayed(folder: Path, settings: Sequence[str], seed: int) -> list[Cell]:
             path,
             [*_settings(settings), f"radio.routing={routing}", f"gains.policy={VARIABLE}", "faults=[]"],
             {"map": name, "routing": routing, "policy": VARIABLE},
+            seed,
+        )
+    ]
+
+
+def bounds(folder: Path, settings: Sequence[str], seed: int) -> list[Cell]:
+    """The delayed missions with constant k_rho, over a perfect link and over none."""
+    return [
+        cell
+        for name, path in _paths(folder).items()
+        for link in LINKS
+        for cell in _cell(
+            path,
+            [*_settings(settings), f"gains.policy={CONSTANT}", f"radio.link={link}"],
+            {"map": name, "link": link},
             seed,
         )
     ]
