@@ -185,7 +185,7 @@ def sweep(
     varied = cells(path, fixed, axes, first_seed)
     wanted = Wanted([base], varied, range(first_seed, first_seed + seeds), keep, processes)
     with held(folder):
-        one = Sweep(wanted, folder, workers(jobs, dask), _Nobody())
+        one = Sweep(wanted, folder, workers(jobs, dask), Nobody())
         one.run()
     if one.crashed:
         first = one.crashed[0]
@@ -193,7 +193,7 @@ def sweep(
     return one.missions()
 
 
-class _Nobody:
+class Nobody:
     """Is told of missions, and does nothing."""
 
     def begin(self, before: int) -> None:

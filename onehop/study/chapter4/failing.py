@@ -82,7 +82,7 @@ def run_failing(order: FailingOrder) -> Row:
     """Run a mission, and say who leads the largest team at its end."""
     said = _LastSaid()
     outcome = inline.run(order.bundle, None, said.watch)
-    leader = _leader_of_most(said.status)
+    leader = leader_of_most(said.status)
     members = tuple(sorted(robot for robot, one in said.status.items() if one.leader == leader))
     shape = str(said.status[leader].shape) if leader in said.status else ""
     expected = EXPECTED[order.scenario]
@@ -100,7 +100,7 @@ def run_failing(order: FailingOrder) -> Row:
     }
 
 
-def _leader_of_most(status: Mapping[int, Status]) -> int:
+def leader_of_most(status: Mapping[int, Status]) -> int:
     """Whom most robots obey; of several the lowest id."""
     counted = Counter(one.leader for one in status.values())
     return min(counted, key=lambda leader: (-counted[leader], leader), default=0)
