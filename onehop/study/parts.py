@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from onehop import __version__
 from onehop.campaign.collection import Collection, Crashed, Order
@@ -15,10 +15,8 @@ from onehop.study.sweeping import Sweep, Wanted
 from onehop.wire.output_folder import explained
 
 
-class Announce(Protocol):
-    """Is told that a part of a study begins, and how much is wanted; gives who listens to it."""
-
-    def __call__(self, part: str, total: int) -> Listener: ...
+Announce = Callable[[str, int], Listener]
+"""Is told that a part of a study begins, and how much is wanted; gives who listens to it."""
 
 
 class Parts:
