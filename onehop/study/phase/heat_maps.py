@@ -58,11 +58,11 @@ def heat_maps(
             _draw(axes, values, columns, lines, [[_word(v) for v in line] for line in values])
             axes.images[0].set(cmap=LEVELS, clim=(low, high))
             _contrast(axes, values)
-            axes.set_title(f"{shown.heading}: {policy}", fontsize=9.5, loc="left")
+            axes.set_title(f"{shown.heading}, policy “{policy}”", fontsize=9.5, loc="left")
         for axes, change in zip(row[len(policies) :], changes, strict=True):
             effect = effects(rows, places, shown.measure, change)
             _draw_change(axes, effect, columns, lines, shown)
-            axes.set_title(f"{change[1]} less {change[0]}", fontsize=9.5, loc="left")
+            axes.set_title(f"change: “{change[1]}” − “{change[0]}”", fontsize=9.5, loc="left")
     for axes in grid[-1]:
         axes.set_xlabel("k_rho_min [1/s]")
     for axes in grid[:, 0]:
