@@ -8,7 +8,7 @@ from onehop.node.bus import GONE, Bus
 from onehop.wire.batch import pack_tick
 from onehop.wire.codec import decode, encode
 from onehop.wire.journal import WireMessage
-from radio_proxy.core.radio import Radio
+from radio_proxy.core.bounds import Carrier, make_radio
 
 
 def main() -> int:
@@ -18,12 +18,12 @@ def main() -> int:
     startup.start(options)
     with startup.connect(options, topics.RADIO) as bus:
         bus.watch(topics.WORLD)
-        radio = Radio(decode(RadioBriefing, startup.briefing(bus, topics.RADIO)))
+        radio = make_radio(decode(RadioBriefing, startup.briefing(bus, topics.RADIO)))
         startup.calm_garbage_collector()
         return _serve(bus, radio)
 
 
-def _serve(bus: Bus, radio: Radio) -> int:
+def _serve(bus: Bus, radio: Carrier) -> int:
     put = bus.publisher(topics.by(topics.RADIO, topics.CARRIED))
     bus.announce(topics.RADIO)
     while True:

@@ -16,9 +16,10 @@ from typing import NamedTuple
 from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.messages import Truth
 from radio_proxy.core.addresses import RobotId
+from radio_proxy.core.bounds import PERFECT_SNR_DB
 from radio_proxy.core.error_rates import CERTAIN_SINR_DB, frame_success
 from radio_proxy.core.link_budget import link_budget
-from radio_proxy.core.propagation import OWN_DB, Propagation
+from radio_proxy.core.propagation import OWN_DB, SILENT_DB, Propagation
 from radio_proxy.core.shadowing import shadowing
 
 EVERY_S = 0.5
@@ -44,6 +45,7 @@ class Connectivity:
         budget = link_budget(briefing.radio)
         self._propagation = Propagation(budget, robots, briefing.walls, shadowing(budget, briefing.seed))
         self._station = dict(zip(robots, self._propagation.stations, strict=True))
+        self._link = briefing.radio.link
         bits = 8.0 * (frame_bytes + briefing.radio.mac_header_bytes)
         error_free_db = _half_without_error_db(briefing.radio.rate_mbps, bits)
         self._least_db = max(budget.receive_threshold_db, error_free_db)
@@ -67,6 +69,14 @@ class Connectivity:
                 out = to_others[there] - propagation.noise_rise(there)
                 back = propagation.mean_snr_row(there)[here] - propagation.noise_rise(here)
                 snr_db = min(out, back)
+                if self._link != "modelled":
+                    cut = any(
+                        one.parts(a, b)
+                        for one in truth.cuts
+                        for a, b in ((robot, other), (other, robot))
+                    )
+                    perfect = self._link == "perfect" and not cut
+                    snr_db = PERFECT_SNR_DB if perfect else SILENT_DB
                 found.append(Pair(robot, other, snr_db, snr_db >= self._least_db))
         return found
 

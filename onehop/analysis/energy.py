@@ -151,6 +151,8 @@ def _add(card: dict[int, float], robot: int, joules: float) -> None:
 
 def _hearing_distance(radio: RadioSection) -> float:
     """Distance within which a frame is heard on the mean, walls and places aside [m]."""
+    if radio.link != "modelled":
+        return math.inf if radio.link == "perfect" else 0.0
     budget = link_budget(radio)
     margin_db = budget.snr_reference_db - budget.receive_threshold_db
     return budget.reference_distance * math.pow(10.0, max(margin_db, 0.0) / (10.0 * budget.exponent))

@@ -32,6 +32,9 @@ PLACE_SIGMAS = 3.0
 FAST_FADE_DB = 12.0
 """What many paths add at most to the mean [dB]: more than that has a probability of 1e-7."""
 
+BOUND_DB = 1e4
+"""SNR at any distance of a perfect link, which no jam drowns; and, negative, of none [dB]."""
+
 _LIGHT_SPEED = 3.0e8
 
 
@@ -76,6 +79,9 @@ class Budget:
         loss = 20.0 * math.log10(4.0 * math.pi * self.nearest * radio.frequency_hz / _LIGHT_SPEED)
         gain = 2.0 * radio.antenna_gain_dbi - radio.system_loss_db
         self.reference_db = _given(radio.tx_power_dbm, preset.power) + gain - loss - self.noise_dbm
+        if radio.link != "modelled":
+            self.exponent = 0.0
+            self.reference_db = BOUND_DB if radio.link == "perfect" else -BOUND_DB
 
     def mean_snr_db(self, distances: FloatArray) -> FloatArray:
         """Without walls, at distances [m] of any shape."""

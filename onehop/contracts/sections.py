@@ -103,12 +103,17 @@ class RobotSection:
     laser_fov_deg: Annotated[float, Range(1.0, 270.0)] = 180.0
 
 
+GainPolicyName = Literal["throughput", "constant", "smooth", "predictive", "lambda2"]
+
+
 @dataclass(frozen=True, slots=True)
 class GainsSection:
     """Gains of the tracking controller (thesis eq. 3.11, 3.12) and the policy of k_rho.
 
-    policy: "throughput" (thesis: k_rho_max below the threshold), "constant" (always k_rho_min), or
-    "smooth" (ours: rises in proportion to the deficit of a filtered throughput, and to its fall).
+    policy: "throughput" (thesis: k_rho_max below the threshold), "constant" (always k_rho_min), "smooth"
+    (ours: rises in proportion to the deficit of a filtered throughput, and to its fall), "predictive"
+    (ours: aims ahead, keeps pace, hurries early, and the leader minds the frontier), or "lambda2" (up
+    the second eigenvalue of the rates' Laplacian); docs/policies.md.
     threshold: "thesis" (0.5333e6 bit/s for all), "ideal" (the same share of the ideal throughput at
     this rate and size of Next) or "slot" (of the ideal throughput over the distance of the robot's slot
     from the leader, thesis 3.8.3). reverse: drive backwards to a slot that lies behind (thesis eq.
@@ -119,7 +124,7 @@ class GainsSection:
     k_beta: Annotated[float, Range(-1e3, 1e3)] = -1.5
     k_rho_min: Annotated[float, Range(1e-3, 1e3)] = 1.0
     k_rho_max: Annotated[float, Range(1e-3, 1e3)] = 3.0
-    policy: Literal["throughput", "constant", "smooth"] = "throughput"
+    policy: GainPolicyName = "throughput"
     threshold: Literal["thesis", "ideal", "slot"] = "thesis"
     reverse: bool = False
 

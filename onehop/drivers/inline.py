@@ -14,7 +14,7 @@ from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
 from onehop.wire.journal import Journal, WireMessage
 from onehop.wire.spoken import action_in, failed
-from radio_proxy.core.radio import Radio
+from radio_proxy.core.bounds import make_radio
 from world_server.core.world import World
 
 Watcher = Callable[[World, dict[int, Action], Carriage], None]
@@ -35,7 +35,7 @@ def run(
     search_in(bundle.folder)
     walls = load_map(scenario.map, bundle.files)
     world = World(scenario, walls)
-    radio = Radio(radio_briefing(scenario, walls.segments))
+    radio = make_radio(radio_briefing(scenario, walls.segments))
     robots: dict[tuple[int, int], Host] = {}
     limits = ActionLimits(scenario.team.robots)
     outcome = None

@@ -29,7 +29,7 @@ from onehop.wire.journal import canonical_rank
 from onehop.wire.log_reader import LogFile, LoggedTick, forged
 from onehop.wire.logged import M, value_of
 from onehop.wire.selection import Selected
-from radio_proxy.core.radio import Radio
+from radio_proxy.core.bounds import make_radio
 from world_server.core.world import World
 
 
@@ -242,7 +242,7 @@ class _RobotPlayer:
 
 
 def _radio(scenario: Scenario, walls: WallMap) -> Player:
-    radio = Radio(radio_briefing(scenario, walls.segments))
+    radio = make_radio(radio_briefing(scenario, walls.segments))
 
     def play(tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         truth = _value(Truth, tick, topics.TRUTH)

@@ -1,12 +1,15 @@
 """How k_rho follows the throughput of the link to the leader (thesis 3.5). Replaceable policies.
 
 A policy hears one throughput for each Next that came, and 0 for each that did not, and the threshold of
-the slot that the robot has by then.
+the slot that the robot has by then. Policies that steer besides are in files of their own (aim.py).
 """
 
 from typing import Protocol
 
+from onehop.contracts.briefings import Briefing
 from onehop.contracts.sections import GainsSection
+from robot_agent.core.motion.lambda2 import Lambda2Gain
+from robot_agent.core.motion.predictive import PredictiveGain
 
 FILTER_SHARE = 0.5
 """Weight of the newest measurement in the smooth policy's filter: two Next periods of memory."""
@@ -68,8 +71,13 @@ class SmoothGain:
         return self._gains.k_rho_min + urgency * (self._gains.k_rho_max - self._gains.k_rho_min)
 
 
-def make_policy(gains: GainsSection) -> GainPolicy:
+def make_policy(briefing: Briefing) -> GainPolicy:
     """The policy that a scenario names."""
+    gains = briefing.gains
+    if gains.policy == "predictive":
+        return PredictiveGain(briefing)
+    if gains.policy == "lambda2":
+        return Lambda2Gain(briefing)
     if gains.policy == "constant":
         return ConstantGain(gains)
     if gains.policy == "smooth":
