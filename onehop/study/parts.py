@@ -14,7 +14,6 @@ from onehop.study.grid import Cell
 from onehop.study.sweeping import Sweep, Wanted
 from onehop.wire.output_folder import explained
 
-
 Announce = Callable[[str, int], Listener]
 """Is told that a part of a study begins, and how much is wanted; gives who listens to it."""
 

@@ -21,7 +21,7 @@ CONSTANT, VARIABLE = "constant", "throughput"
 
 POLICIES = (CONSTANT, VARIABLE)
 
-LINKS: tuple[str, ...] = ()
+LINKS = ("perfect", "none")
 """`radio.link` of the bounds: every message arrives at once, and none does."""
 
 HOLD_AT_S = 60.0

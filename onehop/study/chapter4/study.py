@@ -80,8 +80,7 @@ class ThesisStudy:
         try:
             parts.sweep(DELAYED, bases, cells[DELAYED], asked.seeds, found.delayed, self._rate)
             parts.sweep(UNDELAYED, bases, cells[UNDELAYED], asked.fewer, found.undelayed)
-            if cells[BOUNDS]:
-                parts.sweep(BOUNDS, bases, cells[BOUNDS], asked.fewer, found.bounds)
+            parts.sweep(BOUNDS, bases, cells[BOUNDS], asked.fewer, found.bounds)
             parts.collect(WAYS, _about(alone), ways.run_way, alone, found.ways)
             parts.collect(FAILING, _about(dying), failing.run_failing, dying, found.failing)
         finally:

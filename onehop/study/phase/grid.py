@@ -56,15 +56,20 @@ class Grid:
         ]
 
     def bounds(self, seed: int) -> list[Cell]:
-        """Every place under the first policy with a perfect link, and with none."""
+        """Every place with a perfect link; and with none each length, for there no gain is in force."""
+        perfect, none = LINKS
+        alone = [(self.k_rho_min[0], hold_s) for hold_s in self.hold_s]
         return [
             self._cell(
-                k, hold_s, {"link": link},
-                [f"gains.policy={self.policies[0]}", f"radio.link={link}"], seed,
+                k,
+                hold_s,
+                {"link": link},
+                [f"gains.policy={self.policies[0]}", f"radio.link={link}"],
+                seed,
             )
-            for k, hold_s in self.places
-            for link in LINKS
-        ]  # fmt: skip
+            for link, places in ((perfect, self.places), (none, alone))
+            for k, hold_s in places
+        ]
 
     def _cell(
         self, k: float, hold_s: float, values: dict[str, KeyValue], changes: list[str], seed: int

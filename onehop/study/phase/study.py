@@ -56,8 +56,7 @@ class PolicyStudy:
         try:
             self._parts.sweep(CELLS, bases, cells, seeds, self.rows, self._rate)
             fewer = seeds[: max(2, len(seeds) // 4)]
-            if bounds:
-                self._parts.sweep(BOUNDS, bases, bounds, fewer, self.bounds)
+            self._parts.sweep(BOUNDS, bases, bounds, fewer, self.bounds)
         finally:
             self.summary = self._told()
         return self.summary

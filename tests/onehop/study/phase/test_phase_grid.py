@@ -27,10 +27,12 @@ def test_every_place_has_every_policy() -> None:
         assert scenario.faults[0].duration_s == cell.values["hold_s"]
 
 
-def test_the_bounds_are_at_the_same_places() -> None:
-    cells = Grid(SCENARIO, (), (0.1,), (5.0, 20.0)).bounds(1)
-    assert [(cell.values["hold_s"], cell.bundle.scenario.radio.link) for cell in cells] == [
-        (5.0, "perfect"), (5.0, "none"), (20.0, "perfect"), (20.0, "none"),
+def test_the_bounds_are_a_perfect_link_everywhere_and_none_where_no_gain_counts() -> None:
+    cells = Grid(SCENARIO, (), (0.1, 1.0), (5.0, 20.0)).bounds(1)
+    assert [(*cell.values.values(), cell.bundle.scenario.radio.link) for cell in cells] == [
+        (0.1, 5.0, "perfect", "perfect"), (0.1, 20.0, "perfect", "perfect"),
+        (1.0, 5.0, "perfect", "perfect"), (1.0, 20.0, "perfect", "perfect"),
+        (0.1, 5.0, "none", "none"), (0.1, 20.0, "none", "none"),
     ]  # fmt: skip
 
 
