@@ -26,11 +26,12 @@ class Picture(NamedTuple):
 
 
 class Cell(NamedTuple):
-    """One cell of a table. apart: its interval excludes 0, so it is set in bold."""
+    """One cell of a table. apart: its interval excludes 0, so it is set in bold. long: may be broken."""
 
     words: str
     is_text: bool = False
     apart: bool = False
+    long: bool = False
 
 
 def write_page(path: Path, title: str, lead: str, body: Iterable[str]) -> None:
@@ -77,7 +78,8 @@ def rows(head: Sequence[Cell], lines: Iterable[tuple[str, Sequence[Cell]]]) -> s
 
 
 def _cell(one: Cell, tag: str) -> str:
-    names = ["text" if one.is_text else "number"] + (["apart"] if one.apart else [])
+    names = ["text" if one.is_text else "number"]
+    names += [name for name, holds in (("line", not one.long), ("apart", one.apart)) if holds]
     return f'<{tag} class="{" ".join(names)}">{text(one.words)}</{tag}>'
 
 

@@ -38,7 +38,7 @@ from radio_proxy.core.link_budget import link_budget
 COLOURS = {CONSTANT: "#D55E00", VARIABLE: "#0072B2"}
 NAMES = {CONSTANT: "constant k_rho", VARIABLE: "variable k_rho"}
 
-_ROW_HEIGHT = 1.75
+_ROW_HEIGHT = 1.5
 """Of one follower's panels [inch]."""
 
 _BIN_DB = 1.0
@@ -86,7 +86,8 @@ _BER = (
 
 def executions(reports: Reports) -> Figure:
     """Where everybody drove, one panel a policy."""
-    figure = Figure(figsize=(13.0, 6.9), layout="constrained")
+    figure = Figure(figsize=(11.5, 6.3))
+    figure.subplots_adjust(left=0.045, right=0.995, top=0.955, bottom=0.12, wspace=0.1)
     for axes, (policy, report) in zip(figure.subplots(1, 2), reports.items(), strict=True):
         axes.grid(visible=False)
         draw_mission(axes, report.log, report.tables, name_holds=False)
@@ -96,7 +97,7 @@ def executions(reports: Reports) -> Figure:
         Line2D([], [], color=colour, linewidth=2.5, label=f"robot {robot}")
         for robot, colour in next(iter(reports.values())).colours.items()
     ]
-    figure.legend(handles=handles, loc="outside lower center", ncols=len(handles), frameon=False)
+    figure.legend(handles=handles, loc="lower center", ncols=len(handles), frameon=False)
     return figure
 
 
@@ -127,7 +128,7 @@ def _ending(report: ReportData) -> str:
 def links(reports: Reports) -> Figure:
     """SNR, throughput and hops against time, a row for each follower."""
     followers = _followers(reports)
-    figure = Figure(figsize=(13.0, 0.8 + _ROW_HEIGHT * len(followers)), layout="constrained")
+    figure = _rows_of(len(followers))
     panels: tuple[tuple[str, Callable[[ReportData, int], Series]], ...] = (
         ("SNR of Next [dB]", snr), ("throughput [kb/s]", throughput), ("hops of Next", hops),
     )  # fmt: skip
@@ -151,7 +152,7 @@ def links(reports: Reports) -> Figure:
 def bit_errors(reports: Reports) -> Figure:
     """The thesis's bit error rate against time, and against received power."""
     followers = _followers(reports)
-    figure = Figure(figsize=(13.0, 0.8 + _ROW_HEIGHT * len(followers)), layout="constrained")
+    figure = _rows_of(len(followers))
     grid = figure.subplots(len(followers), 2, sharex="col", sharey=True, squeeze=False)
     for row, robot in zip(grid, followers, strict=True):
         _shade_holds(row[0], reports)
@@ -168,6 +169,16 @@ def bit_errors(reports: Reports) -> Figure:
     grid[-1][0].set_xlabel("time [s]")
     grid[-1][1].set_xlabel("received power [dBm]")
     _legend(figure, reports)
+    return figure
+
+
+def _rows_of(count: int) -> Figure:
+    """An empty figure with room for so many rows. Laid out by hand: it takes a fifth of the time."""
+    height = 0.95 + _ROW_HEIGHT * count
+    figure = Figure(figsize=(11.5, height))
+    figure.subplots_adjust(
+        left=0.055, right=0.955, top=1.0 - 0.55 / height, bottom=0.42 / height, hspace=0.14, wspace=0.13
+    )
     return figure
 
 
@@ -259,4 +270,4 @@ def _legend(figure: Figure, reports: Reports) -> None:
         Line2D([], [], color=COLOURS[policy], linewidth=2.0, label=f"{NAMES[policy]}: {_ending(report)}")
         for policy, report in reports.items()
     ]
-    figure.legend(handles=handles, loc="outside upper left", ncols=2, frameon=False, fontsize=10)
+    figure.legend(handles=handles, loc="upper left", ncols=2, frameon=False, fontsize=10)

@@ -25,6 +25,11 @@ COLUMNS = (
 )  # fmt: skip
 """Columns of the tables of cells: heading, name in `--json`, and its scale."""
 
+_WORDS = {**ROUTING_WORD, **{policy: name.partition(" ")[0] for policy, name in NAMES.items()}}
+"""Routings and policies for people."""
+
+_CHANGES = {"policy": "variable − constant", "routing": "MRSR − MRDV"}
+
 _CONCLUDE = (
     (
         "A verdict",
@@ -122,15 +127,16 @@ def _cells(found: Found, summary: dict[str, Any]) -> str:
         for number_, cell in enumerate(one for one in summary["cells"] if one["map"] == ground):
             reported = REPORTED[cell["map"], cell["routing"], cell["policy"]]
             where = {key: cell[key] for key in ("map", "routing", "policy")}
-            names = (ground, ROUTING_WORD[cell["routing"]], NAMES[cell["policy"]])
-            beside = f"{reported.words} ({reported.figure})"
-            words = [Cell(word, is_text=True) for word in (*names, beside)]
-            outcome = Cell(_shapes(chosen(found.delayed, where)), is_text=True)
-            lines.append(("" if number_ else "group", [*words, outcome, *_measures(cell)]))
+            names = (ground, _WORDS[cell["routing"]], _WORDS[cell["policy"]])
+            beside = f"{reported.words} ({reported.figure.partition(',')[0]})"
+            words = [Cell(word, is_text=True) for word in names]
+            words.append(Cell(beside, is_text=True, long=True))
+            words.append(Cell(_shapes(chosen(found.delayed, where)), is_text=True, long=True))
+            lines.append(("" if number_ else "group", [*words, *_measures(cell)]))
         for cell in (one for one in summary["bounds"] if one["map"] == ground):
             words = [Cell(word, is_text=True) for word in (ground, "", f"{cell['link']} link", "", "")]
             lines.append(("bound", [*words, *_measures(cell)]))
-    head = _head("map", "routing", "policy", "thesis: lost; shape", "last shape, of 100 missions")
+    head = _head("map", "routing", "k_rho", "thesis: lost; shape", "last shape [%]")
     return page.rows(head, lines)
 
 
@@ -158,12 +164,12 @@ def _differences(differences: Sequence[dict[str, Any]]) -> str:
     lines = []
     for key in dict.fromkeys(one["key"] for one in differences):
         for place, one in enumerate(row for row in differences if row["key"] == key):
-            where = [str(one.get(name, "")) for name in ("map", "routing", "policy")]
-            change = f"{one[key]} less {one['against']}"
-            where[1 if key == "routing" else 2] = change
+            names = (one.get("map", ""), one.get("routing", ""), one.get("policy", ""))
+            where = [_WORDS.get(name, str(name)) for name in names]
+            where[1 if key == "routing" else 2] = _CHANGES[key]
             words = [Cell(word, is_text=True) for word in where]
             lines.append(("" if place else "group", [*words, *_measures(one, bold=True)]))
-    return page.rows(_head("map", "routing", "policy"), lines)
+    return page.rows(_head("map", "routing", "k_rho"), lines)
 
 
 def _failing(rows: Sequence[Row]) -> str:
@@ -179,7 +185,9 @@ def _failing(rows: Sequence[Row]) -> str:
             f"{', '.join(map(str, expected.members))} ({expected.source})"
         )
         came = "; ".join(f"{words}: {count} of {len(own)}" for words, count in ends.most_common(3))
-        lines.append(("", [Cell(word, is_text=True) for word in (expected.what, thesis, came)]))
+        lines.append(
+            ("", [Cell(word, is_text=True, long=True) for word in (expected.what, thesis, came)])
+        )
     head = [Cell(word, is_text=True) for word in ("what fails", "thesis", "here")]
     return page.rows(head, lines)
 
