@@ -23,6 +23,9 @@ from onehop.scenario.as_toml import as_toml
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import claimed
 
+LINKS = "measured-links.csv"
+"""Name of a trace of measured links beside a scenario that stands for itself."""
+
 LIMIT_S = 600.0
 """Wall-clock time that a mission may take [s]."""
 
@@ -64,7 +67,11 @@ def write_scenario(bundle: Bundle, path: Path, comment: str = "") -> Path:
 
 
 def self_contained(bundle: Bundle, where: str) -> Bundle:
-    """The same mission with its map's file beside it. Raises ScenarioError if it cannot be there."""
+    """The same mission with its map's file and its links beside it.
+
+    Raises ScenarioError if they cannot be there.
+    """
+    bundle = _with_links_beside(bundle)
     own = bundle.scenario.map
     if not own.file:
         return bundle
@@ -75,6 +82,15 @@ def self_contained(bundle: Bundle, where: str) -> Bundle:
     beside = Path(own.file).name
     files = {beside if name == own.file else name: data for name, data in bundle.files.items()}
     return replace(bundle, scenario=replace(bundle.scenario, map=replace(own, file=beside)), files=files)
+
+
+def _with_links_beside(bundle: Bundle) -> Bundle:
+    """The same mission with its trace of measured links as LINKS."""
+    radio = bundle.scenario.radio
+    if not radio.links:
+        return bundle
+    files = {LINKS if name == radio.links else name: data for name, data in bundle.files.items()}
+    return Bundle(replace(bundle.scenario, radio=replace(radio, links=LINKS)), files)
 
 
 def main() -> None:

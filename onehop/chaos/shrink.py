@@ -156,7 +156,7 @@ def _of_robots(scenario: Scenario, robots: tuple[int, ...]) -> Scenario:
     team = replace(scenario.team, size=len(robots), ids=ids)
     faults = tuple(filter(None, (_fault_of(fault, robots) for fault in scenario.faults)))
     own = tuple(one for one in scenario.robots if one.id in robots)
-    return replace(scenario, team=team, faults=faults, robots=own)
+    return replace(scenario, team=team, robots=own, faults=faults)
 
 
 def _fault_of(fault: FaultSection, robots: tuple[int, ...]) -> FaultSection | None:

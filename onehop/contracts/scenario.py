@@ -8,18 +8,22 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from onehop.contracts.fault_section import FaultSection
+from onehop.contracts.plugin_names import GAIN_POLICIES, PLANNERS, PROPAGATION, ROUTING
 from onehop.contracts.problems import Problem
-from onehop.contracts.program_section import BUILT_IN, RobotEntry
-from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.program_section import BUILT_IN as TEAM_PROGRAM
+from onehop.contracts.radio_section import PropagationName, RadioSection, RoutingName
 from onehop.contracts.ranges import Range, out_of_range
+from onehop.contracts.robot_entry import RobotEntry
 from onehop.contracts.sections import (
     ClockSection,
+    GainPolicyName,
     GainsSection,
     GoalSection,
     MapSection,
+    PlannerName,
     PlannerSection,
     RobotSection,
     StartSection,
@@ -29,6 +33,20 @@ from onehop.contracts.sections import (
 NAME = re.compile(r"\w[^/\\]*")
 NAME_BYTES = 200
 """What a scenario may be called: its log's folder bears the name, and the time of its run."""
+
+BUILT_IN: dict[str, tuple[str, ...]] = {
+    PLANNERS: get_args(PlannerName),
+    GAIN_POLICIES: get_args(GainPolicyName),
+    ROUTING: get_args(RoutingName),
+    PROPAGATION: get_args(PropagationName),
+}
+"""Names that cores know themselves, by group."""
+
+
+def plugins(names: dict[str, str]) -> dict[str, str]:
+    """Those of these names, by group, that are not built in."""
+    return {group: name for group, name in names.items() if name not in BUILT_IN[group]}
+
 
 PATH_END = 0.5
 """Distance of a given path's end from the goal, at most, in the goal's tolerances: a leader arrives at
@@ -61,6 +79,18 @@ class Scenario:
     robots: tuple[RobotEntry, ...] = ()
     faults: tuple[FaultSection, ...] = ()
 
+    @property
+    def plugins(self) -> dict[str, str]:
+        """What it takes that is not built in: names by group (onehop/plugins.py)."""
+        return plugins(
+            {
+                PLANNERS: self.planner.kind,
+                GAIN_POLICIES: self.gains.policy,
+                ROUTING: self.radio.routing,
+                PROPAGATION: self.radio.propagation,
+            }
+        )
+
     def program_of(self, robot: int) -> tuple[str, dict[str, Any]]:
         """The program that drives a robot, and the parameters that it is given."""
         team = self.team
@@ -77,9 +107,19 @@ class Scenario:
         return {one.id: one.command for one in self.robots if one.command}
 
     def has_own_programs(self) -> bool:
-        """Whether anybody is driven by another program than the built-in team."""
+        """Whether another program than the built-in team drives anybody, or anything is plugged in."""
         programs = {self.program_of(robot)[0] for robot in self.team.robots}
-        return bool(self.commands) or programs != {BUILT_IN}
+        return bool(self.commands or self.plugins) or programs != {TEAM_PROGRAM}
+
+    def body_of(self, robot: int) -> RobotSection:
+        """Body and sensors of a robot: section [robot], and what its own entry says."""
+        own = next((one for one in self.robots if one.id == robot), None)
+        return self.robot if own is None else own.body.of(self.robot)
+
+    @property
+    def bodies(self) -> tuple[RobotSection, ...]:
+        """Of every robot, in order of id."""
+        return tuple(self.body_of(robot) for robot in self.team.robots)
 
     def problems(self) -> Iterator[Problem]:
         """Everything that keeps this mission from being run: ranges, sections, then across them."""
@@ -100,10 +140,11 @@ class Scenario:
                 f"{len(self.start.poses)} poses for {len(robots)} robots",
                 "one [x, y, heading_deg] for each robot, in order of id",
             )
-        if self.planner.inflation < self.robot.radius:
+        widest, whose = self._widest()
+        if self.planner.inflation < widest:
             yield Problem(
                 "planner.inflation",
-                f"{self.planner.inflation} m is less than robot.radius {self.robot.radius} m",
+                f"{self.planner.inflation} m is less than {whose} {widest} m",
                 "at least the radius",
             )
         if self.planner.kind == "path":
@@ -119,6 +160,11 @@ class Scenario:
                     f"robot {strangers[0]} is not in the team",
                     f"ids of the team: {', '.join(map(str, robots))}",
                 )
+
+    def _widest(self) -> tuple[float, str]:
+        """The largest radius of a robot [m], and its key."""
+        own = [(one.body.radius or 0.0, f"robots[{n}].body.radius") for n, one in enumerate(self.robots)]
+        return max([(self.robot.radius, "robot.radius"), *own], key=lambda one: one[0])
 
     def _robot_problems(self) -> Iterator[Problem]:
         team, seen = self.team.robots, set[int]()
@@ -139,11 +185,12 @@ class Scenario:
         path, start, goal = self.planner.path, self.start, self.goal
         starts = start.poses or ((start.x, start.y, 0.0),)
         away = min(math.dist(path[0], place[:2]) for place in starts)
-        if away > self.robot.laser_range:
+        sight = min(body.laser_range for body in self.bodies)
+        if away > sight:
             yield Problem(
                 "planner.path",
                 f"its first point is {away:.1f} m from the start",
-                f"at most robot.laser_range, {self.robot.laser_range} m",
+                f"at most the laser_range of every robot, {sight} m",
             )
         away, least = math.dist(path[-1], (goal.x, goal.y)), PATH_END * goal.tolerance
         if away > least:

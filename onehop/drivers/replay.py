@@ -16,12 +16,15 @@ from onehop.contracts import topics
 from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.briefings import radio_briefing, robot_briefing
 from onehop.contracts.errors import DecodeError, OnehopError
+from onehop.contracts.link_trace import LinkTrace
 from onehop.contracts.messages import Action, Inbox, Observation, Truth, percept
 from onehop.contracts.scenario import Scenario
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
+from onehop.plugins import plugged_radio
 from onehop.programs.find import check, search_in
 from onehop.programs.host import Host, ProgramError
+from onehop.scenario.link_trace import link_trace
 from onehop.wire.audit import Audit
 from onehop.wire.codec import UNPACK_REFUSALS, decode, encode
 from onehop.wire.difference import first_difference
@@ -104,7 +107,7 @@ def replay(
     }
     if parts:
         walls = load_map(original.map, log.bundle.files)
-        players[topics.RADIO_RECORD] = _radio(original, walls)
+        players[topics.RADIO_RECORD] = _radio(original, walls, link_trace(log.bundle, str(log.path)))
         players[topics.TRUTH] = _WorldPlayer(original, walls).play
     report = Report(robots=chosen, foreign=tuple(sorted(foreign)))
     audit = Audit(log)
@@ -248,8 +251,8 @@ class _RobotPlayer:
         yield topics.out(i), said
 
 
-def _radio(scenario: Scenario, walls: WallMap) -> Player:
-    radio = Radio(radio_briefing(scenario, walls.segments))
+def _radio(scenario: Scenario, walls: WallMap, links: LinkTrace | None) -> Player:
+    radio = Radio(plugged_radio(radio_briefing(scenario, walls.segments, links)))
 
     def play(tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         truth = _value(Truth, tick, topics.TRUTH)

@@ -73,7 +73,7 @@ class ProcessGroup:
 
     Each gets its own password through its environment, a lifeline that ends it when this process dies,
     and a file in the folder `words` for what it says. If nobody said anything the folder goes.
-    programs: where robots look for programs that are not installed. commands: of robots that are not
+    programs: where robots and radio look for what is not installed. commands: of robots that are not
     ours; they are started in the folder `programs`, with what ours are told. Raises InputError when this
     system does not let so many processes work together.
     """
@@ -91,6 +91,7 @@ class ProcessGroup:
         self._mission = mission
         self._words = words
         self._programs = programs
+        self._search = ["--programs", programs] if programs else []
         self._commands = commands
         others = (topics.RADIO, topics.RECORDER, topics.OPERATOR, topics.INJECTOR)
         names = [*others, *map(topics.robot_name, robots)]
@@ -125,7 +126,7 @@ class ProcessGroup:
         self._start(topics.WORLD, "world_server", [*arguments, "--listen", self._endpoint])
 
     def start_radio(self) -> None:
-        self._start(topics.RADIO, "radio_proxy", ["--connect", self._endpoint])
+        self._start(topics.RADIO, "radio_proxy", ["--connect", self._endpoint, *self._search])
 
     def start_recorder(self, out: Path, with_file: bool, claim: int) -> None:
         """claim: descriptor that holds the folder `out`, from now on for the recorder too."""
@@ -143,8 +144,7 @@ class ProcessGroup:
         name, arguments = topics.robot_name(robot), ["--id", str(robot), "--connect", self._endpoint]
         command = self._commands.get(robot)
         if command is None:
-            arguments += ["--programs", self._programs] if self._programs else []
-            self._start(name, "robot_agent", arguments)
+            self._start(name, "robot_agent", [*arguments, *self._search])
             return
         try:
             self._start_command(name, command, arguments, folder=self._programs)

@@ -30,7 +30,7 @@ OUTCOME = "outcome"
 """Names in the file; the last is that of the metadata that end a log."""
 
 PROGRAMS = "programs"
-"""Where the robots' programs lay, if they are not ours: a re-execution looks for them there again."""
+"""Where programs and plugins lay, if they are not ours: a re-execution looks for them there again."""
 
 
 class LogWriter:

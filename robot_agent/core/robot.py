@@ -119,7 +119,7 @@ class Robot(Program):
 
     def _reset_gain(self) -> None:
         """A follower that has not heard a Next yet is in no hurry."""
-        self._policy = make_policy(self._briefing.gains)
+        self._policy = make_policy(self._briefing)
         self._k_rho = self._briefing.gains.k_rho_min
         self._throughput = 0.0
 

@@ -13,8 +13,13 @@ THRESHOLD = 0.5333e6  # thesis 3.8.3
 
 
 def course(policy, throughputs):
-    gains = GainsSection(policy=policy, k_rho_min=1.0, k_rho_max=3.0)
-    chooser = make_policy(gains)
+    scenario = Scenario(
+        name="gains",
+        goal=GoalSection(9.0, 0.0),
+        map=MapSection(width=20.0, height=20.0),
+        gains=GainsSection(policy=policy, k_rho_min=1.0, k_rho_max=3.0),
+    )
+    chooser = make_policy(robot_briefing(scenario, 1, 0))
     return [chooser.heard(value, THRESHOLD) for value in throughputs]
 
 
