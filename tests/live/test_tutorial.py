@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from onehop.analysis import open_log
+
 pytestmark = [pytest.mark.live, pytest.mark.slow]
 
 ROOT = Path(__file__).parents[2]
@@ -64,11 +66,18 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 def test_every_command_of_the_page_does_what_it_should(folder: Path) -> None:
     for name in ("first", "second", "broken"):
-        assert (folder / "runs" / name / "report" / "index.html").exists()
+        assert (folder / "runs" / name / "report" / "report.html").exists()
     said = (folder / "said.txt").read_text()
     assert "0 divergences: every message is the same, byte for byte" in said
     assert "the same bytes every time, in one process and in many" in said
-    assert "nearest" in (folder / "runs" / "second" / "report" / "index.html").read_text()
+    assert (folder / "runs" / "second" / "report" / "values.png").exists()
+    shown = {run: values_of(folder / "runs" / run / "mission.mcap") for run in ("first", "second")}
+    assert shown["second"] - shown["first"] == {"nearest"}
+
+
+def values_of(log: Path) -> set[str]:
+    """Names of what its programs show."""
+    return set(open_log(log).table("values")["name"].tolist())
 
 
 def test_what_was_installed_is_no_checkout(folder: Path) -> None:
