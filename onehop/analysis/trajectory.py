@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
 from matplotlib.patheffects import withStroke
 
 from onehop.analysis.ground import draw_ground
@@ -59,11 +60,25 @@ def figure_of(log: Log, tables: dict[str, Table]) -> Figure:
 
 
 def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
+    colours = robot_colours(log.robots)
+    draw_mission(axes, log, tables)
+    gone = departures(tables["poses"], tables["departures"])
+    faults = begun_faults(tables["faults"])[:MOST_FAULTS]
+    axes.legend(
+        handles=_legend(log, gone, faults, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
+        frameon=False, fontsize=9, borderaxespad=0.0,
+    )  # fmt: skip
+    axes.set_title(_title(log), loc="left", fontsize=11)
+
+
+def draw_mission(axes: Axes, log: Log, tables: dict[str, Table], name_holds: bool = True) -> None:
+    """Map, paths, formations and what went wrong, without title and legend.
+
+    name_holds: say who is held beside each mark.
+    """
     poses, status = tables["poses"], tables["status"]
     colours = robot_colours(log.robots)
-    gone = departures(poses, tables["departures"])
     draw_ground(axes, log.bundle, tables["jams"])
-    faults = begun_faults(tables["faults"])[:MOST_FAULTS]
     for robot, colour in colours.items():
         carried = [
             tick
@@ -71,18 +86,14 @@ def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
             if kind == "kidnap" and robot in robots
         ]
         _draw_path(axes, poses.of(robot), carried, colour)
-    _draw_formations(axes, poses, status, colours)
-    _draw_holds(axes, poses, colours)
-    for departure in gone:
+    radii = {robot: log.scenario.body_of(robot).radius for robot in log.robots}
+    _draw_formations(axes, poses, status, colours, radii)
+    _draw_holds(axes, poses, colours, name_holds)
+    for departure in departures(poses, tables["departures"]):
         _draw_departure(axes, departure, colours[departure.robot])
     for x, y in zip(tables["contacts"]["x"], tables["contacts"]["y"], strict=True):
         axes.plot(x, y, marker="P", color=BAD, markersize=7, zorder=8)
     _draw_leaders(axes, poses, leadership(status, tables["departures"], log.period_ns).main, colours)
-    axes.legend(
-        handles=_legend(log, gone, faults, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
-        frameon=False, fontsize=9, borderaxespad=0.0,
-    )  # fmt: skip
-    axes.set_title(_title(log), loc="left", fontsize=11)
 
 
 def _tables(log: Log) -> dict[str, Table]:
@@ -118,7 +129,9 @@ def _snapshots(status: Table) -> list[float]:
     return [*[time for time in regular if time < end_s - SNAPSHOT_S / 4], end_s]
 
 
-def _draw_formations(axes: Axes, poses: Table, status: Table, colours: dict[int, str]) -> None:
+def _draw_formations(
+    axes: Axes, poses: Table, status: Table, colours: dict[int, str], radii: dict[int, float]
+) -> None:
     links: list[tuple[tuple[float, float], tuple[float, float]]] = []
     known = np.unique(status["tick"])
     stale: tuple[float, float] = (np.inf, np.inf)
@@ -134,7 +147,7 @@ def _draw_formations(axes: Axes, poses: Table, status: Table, colours: dict[int,
             if robot != leader and leader in places and robot in places:
                 links.append((places[leader], places[robot]))
         for row, robot in enumerate(here["robot"].tolist()):
-            _draw_robot(axes, here, row, colours[robot])
+            _draw_robot(axes, here, row, colours[robot], radii[robot])
         stale = _label_time(axes, time_s, said, places, stale)
     axes.add_collection(LineCollection(links, colors=INK, linewidths=0.6, alpha=0.55, zorder=3.5))
 
@@ -155,7 +168,10 @@ def _label_time(
     return spot
 
 
-def _draw_robot(axes: Axes, here: Table, row: int, colour: str) -> None:
+def _draw_robot(axes: Axes, here: Table, row: int, colour: str, radius: float) -> None:
+    """A triangle that can be seen on any map, and the body as large as it is [m]."""
+    place = float(here["x"][row]), float(here["y"][row])
+    axes.add_patch(Circle(place, radius, facecolor="none", edgecolor=colour, linewidth=0.8, zorder=5))
     heading = float(here["heading"][row])
     axes.plot(
         here["x"][row], here["y"][row], marker=(3, 0, np.degrees(heading) - 90.0), markersize=7.5,
@@ -163,7 +179,7 @@ def _draw_robot(axes: Axes, here: Table, row: int, colour: str) -> None:
     )  # fmt: skip
 
 
-def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str]) -> None:
+def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str], named: bool) -> None:
     for robot, colour in colours.items():
         own = poses.of(robot)
         begins = np.flatnonzero(np.diff(own["held"].astype(np.int8), prepend=0) == 1)
@@ -172,6 +188,8 @@ def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str]) -> None:
                 own["x"][row], own["y"][row], marker="s", markersize=11, markerfacecolor="none",
                 markeredgecolor=colour, markeredgewidth=1.8, zorder=7,
             )  # fmt: skip
+            if not named:
+                continue
             axes.annotate(
                 f"{robot} held, {own['time_s'][row]:.0f} s", (own["x"][row], own["y"][row]),
                 textcoords="offset points", xytext=(9, -12), fontsize=8, color=INK, zorder=9,
