@@ -69,6 +69,16 @@ class Scenario:
             return own.program, own.parameters
         return team.program, {**team.parameters, **own.parameters}
 
+    @property
+    def room_at_goal(self) -> float:
+        """Distance from the goal within which robots that come one by one have arrived [m].
+
+        n discs as wide as the planner's zone need, around the first one, a disc whose radius grows with
+        the root of their number.
+        """
+        others = len(self.team.robots) - 1
+        return self.goal.tolerance + 2.0 * self.planner.inflation * math.sqrt(others)
+
     def problems(self) -> Iterator[Problem]:
         """Everything that keeps this mission from being run: ranges, sections, then across them."""
         if not _is_name(self.name):

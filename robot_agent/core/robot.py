@@ -49,6 +49,7 @@ class Robot(Program):
         self._slots = SlotFinder(briefing.team)
         self._settling = Settling(briefing.period_ns / NANOSECONDS)
         self._threshold = required_throughput_bps(briefing)
+        self._threshold_distance = math.nan
         self._protocol: TeamProtocol | None = None
         self._in_position = False
         self._error = 0.0
@@ -196,7 +197,10 @@ class Robot(Program):
             self._target = (pose.x, pose.y)
             return self._motion.follow(pose, scan, nearest, None)
         target = self._slots.slot(state, view, leader)
-        self._threshold = required_throughput_bps(self._briefing, self._slots.distance(state))
+        distance = self._slots.distance(state)
+        if distance != self._threshold_distance:
+            self._threshold_distance = distance
+            self._threshold = required_throughput_bps(self._briefing, distance)
         goal = self._briefing.goal
         self._target = (target.x, target.y)
         self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
