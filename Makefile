@@ -7,7 +7,7 @@ LOWEST_PYTHON ?= python3.11
 LOWEST := .venv-lowest
 LOWEST_STAMP := $(LOWEST)/.installed
 
-.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign bench fuzz compose-demo compose-faults clean
+.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign study bench fuzz compose-demo compose-faults clean
 
 setup: $(STAMP)
 
@@ -57,6 +57,10 @@ campaign: setup  ## what takes minutes and stays out of CI
 	for seed in 1 2 3 4 5 6 7 8 9 10; do \
 	    ONEHOP_SEQUENCES=1000 $(BIN)/pytest -q --hypothesis-seed=$$seed tests/agent/team/test_team_machine.py \
 	    || exit 1; done
+
+study: setup  ## chapter 4 of the thesis and the phase diagram of its gain policy, with few seeds: minutes
+	$(BIN)/onehop study thesis --seeds 3 --out runs/study-thesis
+	$(BIN)/onehop study policies --seeds 3 --k-rho-min 0.1,0.3,1 --hold 10,20 --out runs/study-policies
 
 bench: setup
 	for program in bench/*.py; do $(BIN)/python $$program || [ $$? = 77 ] || exit 1; done  # 77: no ns-3 here

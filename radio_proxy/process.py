@@ -10,7 +10,7 @@ from onehop.programs.find import search_in
 from onehop.wire.batch import pack_tick
 from onehop.wire.codec import decode, encode
 from onehop.wire.journal import WireMessage
-from radio_proxy.core.radio import Radio
+from radio_proxy.core.bounds import Carrier, make_radio
 
 
 def main() -> int:
@@ -22,12 +22,12 @@ def main() -> int:
     search_in(options.programs)
     with startup.connect(options, topics.RADIO) as bus:
         bus.watch(topics.WORLD)
-        radio = Radio(plugged_radio(decode(RadioBriefing, startup.briefing(bus, topics.RADIO))))
+        radio = make_radio(plugged_radio(decode(RadioBriefing, startup.briefing(bus, topics.RADIO))))
         startup.calm_garbage_collector()
         return _serve(bus, radio)
 
 
-def _serve(bus: Bus, radio: Radio) -> int:
+def _serve(bus: Bus, radio: Carrier) -> int:
     put = bus.publisher(topics.by(topics.RADIO, topics.CARRIED))
     bus.announce(topics.RADIO)
     while True:

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from onehop.analysis.columns import TABLES, Column
+from onehop.analysis.derived import DERIVED, derive
 from onehop.analysis.tables import Table, build
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError, InputError
@@ -125,13 +126,33 @@ class Log:
     ) -> dict[str, Table]:
         """Several tables in one pass over the log. Raises InputError for a table that there is not."""
         for name in names:
-            if name not in TABLES:
+            if name not in TABLES and name not in DERIVED:
                 raise InputError(
-                    f"table {name}", "there is no such table", f"one of {', '.join(TABLES)}"
+                    f"table {name}", "there is no such table", f"one of {', '.join([*TABLES, *DERIVED])}"
                 )
-        stems = sorted({TABLES[name].key for name in names})
+        spoken = [name for name in names if name in TABLES]
+        stems = sorted({TABLES[name].key for name in spoken})
         keys = [key for stem in stems for key in _keys(stem, robots)]
-        return self.build(names, self.messages(*keys, start_s=start_s, end_s=end_s))
+        found = self.build(spoken, self.messages(*keys, start_s=start_s, end_s=end_s)) if keys else {}
+        for name in names:
+            if name in DERIVED:
+                try:
+                    found[name] = derive(name, self.bundle, self._watched(start_s, end_s))
+                except (ArithmeticError, ValueError) as error:
+                    raise forged(self.path, f"{name} cannot be computed: {error}") from None
+        return found
+
+    def _watched(self, start_s: float, end_s: float | None) -> Iterator[tuple[Truth, RadioRecord]]:
+        """Truth and radio of every tick that has both."""
+        records = self.radio_records(start_s, end_s)
+        last = next(records, None)
+        for tick, truth in self.truths(start_s, end_s):
+            while last is not None and last[0] < tick:
+                last = next(records, None)
+            if last is None or last[0] > tick:
+                continue
+            self._check_team("poses", np.array([one.robot for one in truth.present]))
+            yield truth, last[1]
 
     def build(self, names: Iterable[str], messages: Iterable[Selected]) -> dict[str, Table]:
         """Several tables of messages of this log. Raises LogError for a message that cannot be one."""

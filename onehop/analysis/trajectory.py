@@ -60,11 +60,25 @@ def figure_of(log: Log, tables: dict[str, Table]) -> Figure:
 
 
 def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
+    colours = robot_colours(log.robots)
+    draw_mission(axes, log, tables)
+    gone = departures(tables["poses"], tables["departures"])
+    faults = begun_faults(tables["faults"])[:MOST_FAULTS]
+    axes.legend(
+        handles=_legend(log, gone, faults, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
+        frameon=False, fontsize=9, borderaxespad=0.0,
+    )  # fmt: skip
+    axes.set_title(_title(log), loc="left", fontsize=11)
+
+
+def draw_mission(axes: Axes, log: Log, tables: dict[str, Table], name_holds: bool = True) -> None:
+    """Map, paths, formations and what went wrong, without title and legend.
+
+    name_holds: say who is held beside each mark.
+    """
     poses, status = tables["poses"], tables["status"]
     colours = robot_colours(log.robots)
-    gone = departures(poses, tables["departures"])
     draw_ground(axes, log.bundle, tables["jams"])
-    faults = begun_faults(tables["faults"])[:MOST_FAULTS]
     for robot, colour in colours.items():
         carried = [
             tick
@@ -74,17 +88,12 @@ def _draw(axes: Axes, log: Log, tables: dict[str, Table]) -> None:
         _draw_path(axes, poses.of(robot), carried, colour)
     radii = {robot: log.scenario.body_of(robot).radius for robot in log.robots}
     _draw_formations(axes, poses, status, colours, radii)
-    _draw_holds(axes, poses, colours)
-    for departure in gone:
+    _draw_holds(axes, poses, colours, name_holds)
+    for departure in departures(poses, tables["departures"]):
         _draw_departure(axes, departure, colours[departure.robot])
     for x, y in zip(tables["contacts"]["x"], tables["contacts"]["y"], strict=True):
         axes.plot(x, y, marker="P", color=BAD, markersize=7, zorder=8)
     _draw_leaders(axes, poses, leadership(status, tables["departures"], log.period_ns).main, colours)
-    axes.legend(
-        handles=_legend(log, gone, faults, colours), loc="upper left", bbox_to_anchor=(1.01, 1.0),
-        frameon=False, fontsize=9, borderaxespad=0.0,
-    )  # fmt: skip
-    axes.set_title(_title(log), loc="left", fontsize=11)
 
 
 def _tables(log: Log) -> dict[str, Table]:
@@ -170,7 +179,7 @@ def _draw_robot(axes: Axes, here: Table, row: int, colour: str, radius: float) -
     )  # fmt: skip
 
 
-def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str]) -> None:
+def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str], named: bool) -> None:
     for robot, colour in colours.items():
         own = poses.of(robot)
         begins = np.flatnonzero(np.diff(own["held"].astype(np.int8), prepend=0) == 1)
@@ -179,6 +188,8 @@ def _draw_holds(axes: Axes, poses: Table, colours: dict[int, str]) -> None:
                 own["x"][row], own["y"][row], marker="s", markersize=11, markerfacecolor="none",
                 markeredgecolor=colour, markeredgewidth=1.8, zorder=7,
             )  # fmt: skip
+            if not named:
+                continue
             axes.annotate(
                 f"{robot} held, {own['time_s'][row]:.0f} s", (own["x"][row], own["y"][row]),
                 textcoords="offset points", xytext=(9, -12), fontsize=8, color=INK, zorder=9,

@@ -17,6 +17,7 @@ from onehop.contracts.errors import ScenarioError
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import (
+    GainPolicyName,
     GainsSection,
     GoalSection,
     MapSection,
@@ -119,8 +120,8 @@ def _robot(random: np.random.Generator, own: RobotSection) -> RobotSection:
 
 
 def _gains(random: np.random.Generator, own: GainsSection) -> GainsSection:
-    policy: Literal["throughput", "constant", "smooth"] = _one(
-        random, "throughput", "throughput", "smooth", "constant"
+    policy: GainPolicyName = _one(
+        random, "throughput", "throughput", "smooth", "constant", "predictive", "lambda2"
     )
     threshold: Literal["thesis", "ideal"] = _one(random, "thesis", "ideal")
     low = _one(random, 1.0, 1.0, 0.3)

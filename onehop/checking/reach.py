@@ -36,6 +36,8 @@ FAST_FADE_DB = 12.0
 
 MODEL = "log-distance"
 """The propagation that is worked out anew."""
+BOUND_DB = 1e4
+"""SNR at any distance of a perfect link, which no jam drowns; and, negative, of none [dB]."""
 
 _LIGHT_SPEED = 3.0e8
 
@@ -92,6 +94,9 @@ class Budget:
         gain = 2.0 * radio.antenna_gain_dbi - radio.system_loss_db
         self.unweakened_db = _given(radio.tx_power_dbm, preset.power) + gain - self.noise_dbm
         self.reference_db = self.unweakened_db - loss
+        if radio.link != "modelled":
+            self.exponent = 0.0
+            self.reference_db = BOUND_DB if radio.link == "perfect" else -BOUND_DB
 
     def mean_snr_db(self, distances: FloatArray) -> FloatArray:
         """Without walls, at distances [m] of any shape."""

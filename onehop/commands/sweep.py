@@ -16,6 +16,7 @@ from onehop.mission.stops import Stopped
 from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.study.grid import axis, cells
+from onehop.study.in_words import interval
 from onehop.study.mission import DIFFERS, FAILED, Keep
 from onehop.study.sweeping import ROWS, Sweep, Wanted
 from onehop.wire.output_folder import held
@@ -45,10 +46,11 @@ class _Shown(NamedTuple):
 _TABLES = (
     (
         _Shown("lost", "lost"), _Shown("sim_s", "time s"), _Shown("error_m", "error m"),
-        _Shown("collisions", "contacts"),
+        _Shown("drive_j", "driving kJ", 1e3), _Shown("collisions", "contacts"),
     ),
     (
         _Shown("throughput_bps", "throughput kb/s", 1e3), _Shown("below_threshold_s", "below s"),
+        _Shown("connected_share", "connected %", 0.01), _Shown("radio_j", "card J"),
         _Shown("delay_ms", "delay ms"), _Shown("routing_bytes", "routing kB", 1e3),
     ),
 )  # fmt: skip
@@ -71,7 +73,7 @@ def sweep(
     check(base.scenario, str(scenario))
     require_programs(base.scenario, str(scenario))
     varied = cells(scenario, settings, [axis(text) for text in over], first)
-    wanted = Wanted(base, varied, range(first, first + seeds), keep, how_many.processes)
+    wanted = Wanted([base], varied, range(first, first + seeds), keep, how_many.processes)
     folder = out or Path("runs") / f"sweep-{time.strftime('%Y%m%d-%H%M%S')}"
     if importlib.util.find_spec("polars") is None:
         say(f"{folder / ROWS} alone is written. {NO_PARQUET}")
@@ -170,16 +172,4 @@ def _print_differences(
 
 def _in_words(row: dict[str, Any], shown: _Shown) -> str:
     mean, (low, high) = row[f"{shown.name}_mean"], row[f"{shown.name}_ci95"]
-    if mean is None:
-        return "-"
-    if low is None:
-        return _number(mean / shown.scale)
-    low, high = (_number(end / shown.scale) for end in (low, high))
-    return f"{_number(mean / shown.scale)} [{low}, {high}]"
-
-
-def _number(value: float) -> str:
-    """Three digits that count, and no powers of ten."""
-    if abs(value) >= 100.0:
-        return f"{value:.0f}"
-    return f"{round(value, 3):z.3g}"
+    return interval(mean, low, high, shown.scale)

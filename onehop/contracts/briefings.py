@@ -107,8 +107,8 @@ def robot_briefing(scenario: Scenario, robot: int, incarnation: int) -> Briefing
         silence_s=scenario.clock.silence_s,
         program=program,
         parameters=parameters,
-        goal=scenario.goal,
-        team=_team_of(scenario, program),
+        goal=_goal_of(scenario),
+        team=_team_of(scenario, robot, program),
         body=scenario.body_of(robot),
         gains=scenario.gains,
         planner=scenario.planner,
@@ -116,9 +116,22 @@ def robot_briefing(scenario: Scenario, robot: int, incarnation: int) -> Briefing
     )
 
 
-def _team_of(scenario: Scenario, program: str) -> TeamSection:
-    """The team's section as a robot of this program sees it: others do not speak its language."""
+def _goal_of(scenario: Scenario) -> GoalSection:
+    """The goal; without a link each robot comes alone, and needs room beside those that are there."""
+    if scenario.radio.link == "none":
+        return replace(scenario.goal, tolerance=scenario.room_at_goal)
+    return scenario.goal
+
+
+def _team_of(scenario: Scenario, robot: int, program: str) -> TeamSection:
+    """The team's section as a robot of this program sees it: others do not speak its language.
+
+    Without a link it is a team of one, that leads itself to the goal from the start on: what the others
+    would wait for, and elect, is nothing that a robot without a radio has.
+    """
     team = scenario.team
+    if scenario.radio.link == "none":
+        return replace(team, ids=(robot,))
     alike = tuple(robot for robot in team.robots if scenario.program_of(robot)[0] == program)
     return team if alike == team.robots else replace(team, ids=alike)
 

@@ -176,6 +176,12 @@ class Cut(Value, frozen=True):
     side_b: tuple[int, ...]
     one_way: bool = False
 
+    def parts(self, sender: int, receiver: int) -> bool:
+        """Whether no frame of the one reaches the other."""
+        if sender in self.side_a and receiver in self.side_b:
+            return True
+        return not self.one_way and sender in self.side_b and receiver in self.side_a
+
 
 class Jam(Value, frozen=True):
     """Extra noise at receivers inside a disc: centre and radius [m], power at the receiver [dBm]."""

@@ -11,12 +11,17 @@ from onehop.contracts.ranges import Range
 RoutingName = Literal["direct", "mrsr", "mrdv"]
 PropagationName = Literal["log-distance"]
 """What is built in; packages may add others."""
+_LEAST_SNR_DB = {"thesis": 32.0, "physical": 32.0, "indoor": 0.0}
+"""Receive threshold of each preset: the thesis's (3.7), and that of measured cards (docs/links.md)."""
 
 
 @dataclass(frozen=True, slots=True)
 class RadioSection:
     """Radio of all robots (thesis 3.7): propagation, the 802.11b link, and the ad hoc routing.
 
+    link: "modelled" as all that follows says, or one of its bounds: "perfect" (every message reaches
+        every robot in one hop, after its airtime alone) or "none" (nothing ever arrives, and each robot
+        of the built-in team goes alone).
     preset: "thesis" (0.2 W over free space, SNR 60 dB at 1 m), "physical" (15 dBm, noise figure
         7 dB, exponent 2.6) or "indoor" (the same card in an office as it was measured, docs/links.md).
         The next seven are None to be as the preset says.
@@ -59,6 +64,7 @@ class RadioSection:
     gamma_distance: remaining distance per unit of gamma in p_r = min(1, (1/v)^gamma) [m].
     """
 
+    link: Literal["modelled", "perfect", "none"] = "modelled"
     preset: Literal["thesis", "physical", "indoor"] = "thesis"
     rate_mbps: Annotated[float, Range(1.0, 11.0)] = 1.0
     retry_limit: Annotated[int, Range(1, 255)] | None = None
@@ -98,9 +104,19 @@ class RadioSection:
     hello_s: Annotated[float, Range(0.0, 3600.0)] = 0.0
     gamma_distance: Annotated[float, Range(1e-3, 1e9)] = 10.0
 
+    @property
+    def least_snr_db(self) -> float:
+        """The receive threshold in force: every card knows its own [dB]."""
+        given = self.receive_threshold_db
+        return _LEAST_SNR_DB[self.preset] if given is None else given
+
     def problems(self) -> Iterator[Problem]:
         yield from name_problems("routing", self.routing)
         yield from name_problems("propagation", self.propagation)
+        if self.link != "modelled":
+            for key in ("links", "neighbours"):
+                if getattr(self, key):
+                    yield Problem(key, f'set beside link = "{self.link}"', 'link = "modelled"')
         if self.rate_mbps not in (1.0, 2.0, 5.5, 11.0):
             yield Problem("rate_mbps", f"{self.rate_mbps} Mb/s", "1, 2, 5.5 or 11 (802.11b)")
         if self.retry_limit is not None:

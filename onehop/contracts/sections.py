@@ -122,7 +122,7 @@ class RobotSection:
     laser_noise: Noise = 0.0
 
 
-GainPolicyName = Literal["throughput", "constant", "smooth"]
+GainPolicyName = Literal["throughput", "constant", "smooth", "predictive", "lambda2"]
 """Policies that are built in; packages may add others."""
 
 
@@ -130,8 +130,10 @@ GainPolicyName = Literal["throughput", "constant", "smooth"]
 class GainsSection:
     """Gains of the tracking controller (thesis eq. 3.11, 3.12) and the policy of k_rho.
 
-    policy: "throughput" (thesis: k_rho_max below the threshold), "constant" (always k_rho_min), or
-    "smooth" (ours: rises in proportion to the deficit of a filtered throughput, and to its fall).
+    policy: "throughput" (thesis: k_rho_max below the threshold), "constant" (always k_rho_min), "smooth"
+    (ours: rises in proportion to the deficit of a filtered throughput, and to its fall), "predictive"
+    (ours: aims ahead, keeps pace, hurries early, and the leader minds the frontier), or "lambda2" (up
+    the second eigenvalue of the rates' Laplacian); docs/policies.md.
     threshold: "thesis" (0.5333e6 bit/s for all), "ideal" (the same share of the ideal throughput at
     this rate and size of Next) or "slot" (of the ideal throughput over the distance of the robot's slot
     from the leader, thesis 3.8.3). reverse: drive backwards to a slot that lies behind (thesis eq.

@@ -16,7 +16,7 @@ from onehop.scenario.link_trace import link_trace
 from onehop.wire.codec import encode
 from onehop.wire.journal import Journal, WireMessage
 from onehop.wire.spoken import action_in, failed
-from radio_proxy.core.radio import Radio
+from radio_proxy.core.bounds import make_radio
 from world_server.core.world import World
 
 Watcher = Callable[[World, dict[int, Action], Carriage], None]
@@ -38,7 +38,7 @@ def run(
     search_in(bundle.folder)
     walls = load_map(scenario.map, bundle.files)
     world = World(scenario, walls)
-    radio = Radio(plugged_radio(radio_briefing(scenario, walls.segments, link_trace(bundle))))
+    radio = make_radio(plugged_radio(radio_briefing(scenario, walls.segments, link_trace(bundle))))
     robots: dict[tuple[int, int], Host] = {}
     limits = ActionLimits(scenario.team.robots)
     outcome = None

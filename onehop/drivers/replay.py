@@ -32,7 +32,7 @@ from onehop.wire.journal import canonical_rank
 from onehop.wire.log_reader import LogFile, LoggedTick, forged
 from onehop.wire.logged import M, value_of
 from onehop.wire.selection import Selected
-from radio_proxy.core.radio import Radio
+from radio_proxy.core.bounds import make_radio
 from world_server.core.world import World
 
 
@@ -252,7 +252,7 @@ class _RobotPlayer:
 
 
 def _radio(scenario: Scenario, walls: WallMap, links: LinkTrace | None) -> Player:
-    radio = Radio(plugged_radio(radio_briefing(scenario, walls.segments, links)))
+    radio = make_radio(plugged_radio(radio_briefing(scenario, walls.segments, links)))
 
     def play(tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         truth = _value(Truth, tick, topics.TRUTH)

@@ -6,9 +6,13 @@ setup nor stopped. docs/study.md has the definitions for people.
 
 from collections.abc import Mapping
 
-from onehop.contracts.messages import BROADCAST, Action, Carriage, DeliveryStatus, RadioRecord
-from onehop.contracts.scenario import Scenario
+from onehop.analysis.connectivity import is_connected
+from onehop.analysis.derived import connectivity_of
+from onehop.analysis.energy import EnergyMeter
+from onehop.contracts.messages import BROADCAST, Action, Carriage, DeliveryStatus, RadioRecord, Truth
 from onehop.contracts.team import Mode
+from onehop.scenario.bundle import Bundle
+from radio_proxy.core.error_rates import thesis_ber
 from world_server.core.world import World
 
 NOBODY = 0
@@ -20,7 +24,8 @@ _AT_REST = (Mode.SETUP, Mode.STOPPED)
 class Course:
     """Sums over the ticks of one mission."""
 
-    def __init__(self, scenario: Scenario) -> None:
+    def __init__(self, bundle: Bundle) -> None:
+        scenario = bundle.scenario
         self._period_s = scenario.clock.period_ns / 1e9
         self._team = len(scenario.team.robots)
         self._command_bytes = scenario.team.next_msdu_bytes
@@ -28,7 +33,13 @@ class Course:
         self._throughput = self._error = 0.0
         self._driven = self._led = 0.0
         self._sent = self._delivered = self._delay_ns = 0
+        self._ber = 0.0
+        self._energy = EnergyMeter(scenario.radio, self._period_s)
+        self._drive_j = self._radio_j = 0.0
+        self._links = connectivity_of(bundle)
+        self._looks = self._connected = 0
         self._record: RadioRecord | None = None
+        self._truth: Truth | None = None
 
     def watch(self, world: World, actions: Mapping[int, Action], carried: Carriage) -> None:
         """Called by the driver after every tick."""
@@ -44,7 +55,10 @@ class Course:
                 self._throughput += status.throughput_bps
                 self._below += status.throughput_bps < status.threshold_bps
                 self._error += status.error
-        for one in world.truth().present:
+        before, self._truth = self._truth, world.truth()
+        if before is not None:
+            self._spend(before, carried.record)
+        for one in self._truth.present:
             speed = abs(one.twist.v)
             self._driven += speed
             if one.robot in leaders:
@@ -56,6 +70,17 @@ class Course:
                 if verdict.status is DeliveryStatus.DELIVERED:
                     self._delivered += 1
                     self._delay_ns += verdict.arrival_ns - verdict.offered_ns
+                    self._ber += thesis_ber(verdict.snr_db, 8 * verdict.msdu_bytes)
+
+    def _spend(self, truth: Truth, record: RadioRecord) -> None:
+        """A tick, its ground truth and what the radio did in it; those of the first one are left out."""
+        for spent in self._energy.take(truth, record).values():
+            self._drive_j += spent.drive_j
+            self._radio_j += spent.radio_j
+        if self._links.is_due(truth.tick):
+            self._looks += 1
+            present = [one.robot for one in truth.present]
+            self._connected += is_connected(present, self._links.pairs(truth))
 
     def measures(self) -> dict[str, float | None]:
         """The measures by name; None where there was nothing to measure."""
@@ -68,6 +93,10 @@ class Course:
             "delay_ms": _mean(self._delay_ns / 1e6, self._delivered),
             "delivery_ratio": _mean(self._delivered, self._sent),
             "routing_bytes": sum(record.control_bytes.values()) if record is not None else 0,
+            "ber": _mean(self._ber, self._delivered),
+            "drive_j": self._drive_j / self._team,
+            "radio_j": self._radio_j / self._team,
+            "connected_share": _mean(self._connected, self._looks),
             "driven_m": self._driven * self._period_s / self._team,
             "led_m": self._led * self._period_s,
         }

@@ -44,7 +44,7 @@ def run_mission(order: MissionOrder) -> Row:
     bundle = order.bundle
     log = None if order.keep == "none" else _Log(order.log, bundle)
     journal = Journal(log.write if log is not None else lambda _, __: None)
-    course = Course(bundle.scenario)
+    course = Course(bundle)
     outcome = inline.run(bundle, journal, course.watch)
     digest = journal.digest()
     kept = order.keep == "all" or outcome.outcome != "arrived" or bool(outcome.lost)

@@ -7,7 +7,6 @@ missions.parquet, sweep.json and, if they are kept, logs.
 import hashlib
 import json
 import re
-import time
 import warnings
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -16,10 +15,11 @@ from pathlib import Path
 from typing import Any
 
 from onehop import __version__
-from onehop.campaign.lines import Lines, Row
+from onehop.campaign.collection import Collection, Crashed
+from onehop.campaign.lines import Row
 from onehop.campaign.listener import Listener
 from onehop.campaign.process_mission import self_contained
-from onehop.campaign.workers import Crash, Run, workers
+from onehop.campaign.workers import Run, workers
 from onehop.contracts.randomness import generator
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
@@ -36,12 +36,12 @@ LONGEST_NAME = 120
 
 @dataclass(frozen=True, slots=True)
 class Wanted:
-    """What a sweep is to run. base: the mission that the cells vary. seeds: the same in each cell.
+    """What a sweep is to run. bases: the missions that the cells vary. seeds: the same in each cell.
 
     processes: share of the missions that run as processes besides.
     """
 
-    base: Bundle
+    bases: Sequence[Bundle]
     cells: Sequence[Cell]
     seeds: range
     keep: Keep = "none"
@@ -54,11 +54,11 @@ class Wanted:
 
     def about(self) -> dict[str, Any]:
         """What must be the same to go on with a sweep: everything but which values and seeds."""
-        files = {name: hashlib.sha256(data).hexdigest() for name, data in self.base.files.items()}
+        scenarios = [replace(one.scenario, seed=1) for one in self.bases]
         return {
             "onehop": __version__,
-            "scenario": Bundle(replace(self.base.scenario, seed=1), {}).scenario_json(),
-            "files": files,
+            "scenarios": [Bundle(one, {}).scenario_json() for one in scenarios],
+            "files": [_digests(one) for one in self.bases],
             "over": list(self.cells[0].values),
             "keep": self.keep,
             "processes": self.processes,
@@ -78,14 +78,6 @@ class Wanted:
                 yield MissionOrder(name, cell.values, bundle, self.keep, log, again)
 
 
-@dataclass(frozen=True, slots=True)
-class Crashed:
-    """A mission that has no row, because its worker failed or died; the next call tries it again."""
-
-    name: str
-    why: str
-
-
 class Sweep:
     """One sweep. rows: of the missions that were run, by cell and seed. summary: what they say.
 
@@ -95,58 +87,54 @@ class Sweep:
     def __init__(self, wanted: Wanted, folder: Path, workers: Run, listener: Listener) -> None:
         self._wanted = wanted
         self._folder = folder
-        self._workers = workers
-        self._listener = listener
-        self.rows: list[Row] = []
+        self._collection = Collection(folder / ROWS, wanted.about(), workers, listener)
         self.summary: dict[str, Any] | None = None
-        self.crashed: list[Crashed] = []
-        self.run_now = 0
-        self._sim_s = 0.0
+
+    @property
+    def rows(self) -> list[Row]:
+        """By cell and seed."""
+        place = {json.dumps(cell.values): number for number, cell in enumerate(self._wanted.cells)}
+        return sorted(
+            self._collection.rows, key=lambda row: (place[json.dumps(row["values"])], row["seed"])
+        )
+
+    @property
+    def crashed(self) -> list[Crashed]:
+        """Missions that have no row."""
+        return self._collection.crashed
+
+    @property
+    def run_now(self) -> int:
+        """How many missions this call has run."""
+        return len(self._collection.run_now)
 
     def run(self) -> dict[str, Any]:
         """Run what the folder lacks, and give the summary. Raises InputError."""
-        orders = {order.name: order for order in self._wanted.orders(self._folder)}
+        orders = list(self._wanted.orders(self._folder))
         if self._wanted.keep != "none":
             with explained(self._folder / LOGS, "a folder that can be written, with room for logs"):
                 (self._folder / LOGS).mkdir(exist_ok=True)
-        with Lines(self._folder / ROWS, self._wanted.about()) as lines:
-            self.rows = [row for row in lines.rows if row["name"] in orders]
-            done = {row["name"] for row in self.rows}
-            missing = [order for name, order in orders.items() if name not in done]
-            started = time.monotonic()
-            self._listener.begin(len(done))
-            try:
-                for one in self._workers(run_mission, missing):
-                    if isinstance(one.result, Crash):
-                        self.crashed.append(Crashed(one.item.name, one.result.why))
-                        continue
-                    lines.add(one.result)
-                    self.rows.append(one.result)
-                    self.run_now += 1
-                    self._sim_s += one.result["sim_s"]
-                    self._listener.show(one.result)
-            finally:
-                place = {
-                    json.dumps(cell.values): number for number, cell in enumerate(self._wanted.cells)
-                }
-                self.rows.sort(key=lambda row: (place[json.dumps(row["values"])], row["seed"]))
-                self.summary = self._finish(time.monotonic() - started)
-        return self.summary
+        try:
+            self._collection.run(run_mission, orders)
+        except BaseException:
+            if self._collection.began:
+                self._finish()
+            raise
+        return self._finish()
 
     def missions(self) -> Missions:
         """The rows as a table."""
         return Missions(self._wanted.cells[0].values, self.rows)
 
-    def _finish(self, wall_s: float) -> dict[str, Any]:
-        """Write the table and what it says, and return that."""
-        missions, table = self.missions(), self._folder / TABLE
-        ran = max(wall_s, 1e-9)
-        again = [row["as_processes"] for row in self.rows if row["as_processes"] is not None]
-        summary = {
-            "missions": len(self.rows),
+    def _finish(self) -> dict[str, Any]:
+        """Write the table and what it says, and give that."""
+        rows = self.rows
+        missions, table = Missions(self._wanted.cells[0].values, rows), self._folder / TABLE
+        again = [row["as_processes"] for row in rows if row["as_processes"] is not None]
+        self.summary = {
+            "missions": len(rows),
             "wanted": self._wanted.total,
-            "missions_per_s": round(self.run_now / ran, 4),
-            "sim_s_per_s": round(self._sim_s / ran, 1),
+            **self._collection.rate(),
             "table": str(table) if missions.write_parquet(table) else None,
             "cells": missions.cells(),
             "differences": missions.differences(),
@@ -155,8 +143,12 @@ class Sweep:
         }
         path = self._folder / SUMMARY
         with explained(path, "a folder that can be written"):
-            path.write_text(json.dumps(summary, indent=1) + "\n")
-        return summary
+            path.write_text(json.dumps(self.summary, indent=1) + "\n")
+        return self.summary
+
+
+def _digests(base: Bundle) -> dict[str, str]:
+    return {name: hashlib.sha256(data).hexdigest() for name, data in base.files.items()}
 
 
 def _file_name(name: str) -> str:
@@ -191,9 +183,9 @@ def sweep(
     axes = [Axis(key, list(values)) for key, values in over.items()]
     base = scenario_file.load(path, fixed)
     varied = cells(path, fixed, axes, first_seed)
-    wanted = Wanted(base, varied, range(first_seed, first_seed + seeds), keep, processes)
+    wanted = Wanted([base], varied, range(first_seed, first_seed + seeds), keep, processes)
     with held(folder):
-        one = Sweep(wanted, folder, workers(jobs, dask), _Nobody())
+        one = Sweep(wanted, folder, workers(jobs, dask), Nobody())
         one.run()
     if one.crashed:
         first = one.crashed[0]
@@ -201,7 +193,7 @@ def sweep(
     return one.missions()
 
 
-class _Nobody:
+class Nobody:
     """Is told of missions, and does nothing."""
 
     def begin(self, before: int) -> None:

@@ -17,15 +17,15 @@ from onehop.wire.output_folder import explained
 COLUMNS: dict[str, type] = {
     "seed": int, "outcome": str, "reason": str, "arrived": int, "lost": int, "lost_robots": str,
     "shape": str, "ticks": int, "sim_s": float, "throughput_bps": float, "below_threshold_s": float,
-    "error_m": float, "delay_ms": float, "delivery_ratio": float, "routing_bytes": int,
-    "driven_m": float, "led_m": float, "collisions": int, "digest": str, "as_processes": str,
-    "log": str,
+    "error_m": float, "delay_ms": float, "delivery_ratio": float, "routing_bytes": int, "ber": float,
+    "drive_j": float, "radio_j": float, "connected_share": float, "driven_m": float, "led_m": float,
+    "collisions": int, "digest": str, "as_processes": str, "log": str,
 }  # fmt: skip
 """Columns of the table, after one for each key that was varied."""
 
 MEASURES = (
     "lost", "sim_s", "throughput_bps", "below_threshold_s", "error_m", "delay_ms", "routing_bytes",
-    "collisions",
+    "ber", "drive_j", "radio_j", "connected_share", "collisions",
 )  # fmt: skip
 """Measures of which a cell has a mean and an interval."""
 

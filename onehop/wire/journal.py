@@ -8,6 +8,7 @@ made from that alone.
 import hashlib
 import struct
 from collections.abc import Callable, Iterable
+from functools import lru_cache
 from typing import TypeAlias
 
 from onehop.contracts import topics
@@ -18,6 +19,7 @@ WireMessage: TypeAlias = tuple[str, bytes]
 _RANK = {"truth": 0, "radio": 1, "rx": 2, "obs": 3, "out": 4}
 
 
+@lru_cache(maxsize=4096)
 def canonical_rank(key: str) -> tuple[int, int]:
     """Where a key's message stands within its tick."""
     stem, _, robot = key.partition("/")

@@ -83,18 +83,16 @@ _PRESETS: dict[str, dict[str, float]] = {
         "path_loss_exponent": 2.4,
         "noise_dbm": THERMAL_NOISE_DBM + 7.0,
         "shadowing_db": 0.6,
-        "receive_threshold_db": 0.0,
         "carrier_sense_db": 0.0,
         "spatial_shadowing_db": 9.0,
     },
 }
 _ANY_PRESET = {
     "shadowing_db": 4.0,
-    "receive_threshold_db": 32.0,
     "carrier_sense_db": 10.0,
     "spatial_shadowing_db": 0.0,
 }
-"""Fading and threshold of the thesis's simulation; carrier sense as a DSSS receiver locks on."""
+"""Fading of the thesis's simulation; carrier sense as a DSSS receiver locks on."""
 
 
 def link_budget(section: RadioSection) -> LinkBudget:
@@ -116,7 +114,7 @@ def link_budget(section: RadioSection) -> LinkBudget:
         exponent=value("path_loss_exponent"),
         noise_dbm=value("noise_dbm"),
         shadowing_db=value("shadowing_db"),
-        receive_threshold_db=value("receive_threshold_db"),
+        receive_threshold_db=section.least_snr_db,
         carrier_sense_db=value("carrier_sense_db"),
         wall_loss_db=section.wall_loss_db,
         spatial_shadowing_db=value("spatial_shadowing_db"),

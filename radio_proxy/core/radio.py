@@ -45,15 +45,7 @@ class Radio:
         self._period = briefing.period_ns
         self._section = section
         self._draws = Draws(generator(briefing.seed, "radio"))
-        budget, seed = link_budget(section), briefing.seed
-        self._propagation = Propagation(
-            budget,
-            robots,
-            briefing.walls,
-            fast_fading=fast_fading(section, seed),
-            measured=None if briefing.links is None else MeasuredLinks(briefing.links, section, budget),
-            model=_model(briefing),
-        )
+        self._propagation = make_propagation(briefing)
         self._make_router: RouterMaker = briefing.plugin(ROUTING) or routing.BUILT_IN[section.routing]
         self._corrupter = Corrupter(generator(briefing.seed, "faults"))
         self._eavesdropper = _eavesdropper(briefing, robots, self._propagation)
@@ -158,6 +150,20 @@ def _eavesdropper(
         return None
     draws = Draws(generator(briefing.seed, "radio/neighbours"))
     return Eavesdropper(robots, propagation, link_rules(briefing.radio), draws)
+
+
+def make_propagation(briefing: RadioBriefing) -> Propagation:
+    """At which SNR the robots of a mission receive each other."""
+    section = briefing.radio
+    budget = link_budget(section)
+    return Propagation(
+        budget,
+        tuple(RobotId(robot) for robot in sorted(briefing.robots)),
+        briefing.walls,
+        fast_fading=fast_fading(section, briefing.seed),
+        measured=None if briefing.links is None else MeasuredLinks(briefing.links, section, budget),
+        model=_model(briefing),
+    )
 
 
 def _model(briefing: RadioBriefing) -> PropagationModel:

@@ -14,6 +14,7 @@ from onehop.contracts.randomness import generator
 from onehop.contracts.team import Mode, Status
 from onehop.contracts.units import NANOSECONDS
 from onehop.robot import Action, Program
+from robot_agent.core.motion.aim import AimingPolicy, PacingPolicy, Report, Situation
 from robot_agent.core.motion.detour import SlotTask
 from robot_agent.core.motion.gains import make_policy
 from robot_agent.core.motion.leader import PathfinderMaker, TeamView
@@ -48,6 +49,7 @@ class Robot(Program):
         self._slots = SlotFinder(briefing.team)
         self._settling = Settling(briefing.period_ns / NANOSECONDS)
         self._threshold = required_throughput_bps(briefing)
+        self._threshold_distance = math.nan
         self._protocol: TeamProtocol | None = None
         self._in_position = False
         self._error = 0.0
@@ -72,7 +74,7 @@ class Robot(Program):
         if isinstance(part, Leading):
             twist = self._lead(protocol, part, now_ns, pose, scan, nearest)
         else:
-            twist = self._follow(protocol, part.leader, pose, scan, nearest)
+            twist = self._follow(protocol, part.leader, now_ns, pose, scan, nearest)
         leads = isinstance(part, Leading)
         turns = twist.w != 0.0 and pose.heading != self._heading  # or is held, and has to speak
         self._heading = pose.heading
@@ -119,7 +121,10 @@ class Robot(Program):
 
     def _reset_gain(self) -> None:
         """A follower that has not heard a Next yet is in no hurry."""
-        self._policy = make_policy(self._briefing)
+        policy = make_policy(self._briefing)
+        self._policy = policy
+        self._aiming = policy if isinstance(policy, AimingPolicy) else None
+        self._pacing = policy if isinstance(policy, PacingPolicy) else None
         self._k_rho = self._briefing.gains.k_rho_min
         self._throughput = 0.0
 
@@ -136,7 +141,7 @@ class Robot(Program):
         self._target = (goal.x, goal.y)
         self._error = self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
         self._in_position = True
-        team = self._team_view(protocol, part, now_ns)
+        team = self._team_view(protocol, part, now_ns, pose)
         twist, decision = self._motion.lead(pose, scan, nearest, team)
         if decision.remaining > 0.0:
             self._remaining = decision.remaining
@@ -148,10 +153,13 @@ class Robot(Program):
                 protocol.end_mission(decision.status is PlannerStatus.ARRIVED)
         return twist
 
-    def _team_view(self, protocol: TeamProtocol, part: Leading, now_ns: int) -> TeamView:
+    def _team_view(self, protocol: TeamProtocol, part: Leading, now_ns: int, pose: Pose) -> TeamView:
         """What this robot, as leader, knows of its team."""
         state = protocol.state
         reports = part.ledger.reports
+        pace = 1.0
+        if self._pacing is not None and state.phase is MissionPhase.DRIVING:
+            pace = self._pacing.pace((pose.x, pose.y), self._reports(part))
         return TeamView(
             gathering=state.mode is Mode.SETUP,
             members=state.roster.members,
@@ -160,10 +168,28 @@ class Robot(Program):
             reports_age=(now_ns - part.schedule.commanded_ns) / NANOSECONDS,
             announced=part.told,
             may_ask_for_room=protocol.rules.trail,
+            pace=pace,
         )
 
+    @staticmethod
+    def _reports(part: Leading) -> dict[int, Report]:
+        """Who answered from where, and how that was heard."""
+        found = {}
+        for robot, report in part.ledger.reports.items():
+            answered = part.answered.get(robot)
+            if answered is not None:
+                place, told = (report.pose.x, report.pose.y), (answered.told.x, answered.told.y)
+                found[robot] = Report(place, told, answered.snr_db, answered.hops)
+        return found
+
     def _follow(
-        self, protocol: TeamProtocol, view: LeaderView, pose: Pose, scan: Ranges, nearest: float
+        self,
+        protocol: TeamProtocol,
+        view: LeaderView,
+        now_ns: int,
+        pose: Pose,
+        scan: Ranges,
+        nearest: float,
     ) -> Twist:
         state, leader = protocol.state, view.pose
         if leader is None:
@@ -171,7 +197,10 @@ class Robot(Program):
             self._target = (pose.x, pose.y)
             return self._motion.follow(pose, scan, nearest, None)
         target = self._slots.slot(state, view, leader)
-        self._threshold = required_throughput_bps(self._briefing, self._slots.distance(state))
+        distance = self._slots.distance(state)
+        if distance != self._threshold_distance:
+            self._threshold_distance = distance
+            self._threshold = required_throughput_bps(self._briefing, distance)
         goal = self._briefing.goal
         self._target = (target.x, target.y)
         self._remaining = math.hypot(goal.x - pose.x, goal.y - pose.y)
@@ -181,12 +210,19 @@ class Robot(Program):
         if self._is_at_rest(protocol):
             return self._motion.follow(pose, scan, nearest, None)
         makes_room = state.mode is Mode.GIVING_WAY
+        k_rho = self._k_rho
+        if self._aiming is not None:
+            driving = state.phase is MissionPhase.DRIVING
+            others = self._slots.others(state, leader)
+            target, k_rho = self._aiming.aim(
+                Situation(now_ns, pose, leader, view.silent_since_ns, target, others, driving)
+            )
         task = SlotTask(
             slot=target,
             trail=view.trail,
             standoff=math.hypot(target.x - leader.x, target.y - leader.y),
             leader_moves=state.phase is MissionPhase.DRIVING,
-            k_rho=self._k_rho,
+            k_rho=k_rho,
             lane=view.lane if makes_room else (),
         )
         twist = self._motion.follow(pose, scan, nearest, task)

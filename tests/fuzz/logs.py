@@ -5,6 +5,7 @@ from random import Random
 
 from onehop.analysis import open_log
 from onehop.analysis.columns import TABLES
+from onehop.analysis.derived import DERIVED
 from onehop.contracts.errors import OnehopError
 from tests.fuzz.commands import call
 from tests.onehop.log_forms import CHUNK_DAMAGES, FORMS, mutated, ticks_of, with_extreme, write_form
@@ -53,7 +54,7 @@ class Logs:
             if saved.exists():
                 _refusal(folder, "diff", saved, recorded)
         log = open_log(path)
-        for name in TABLES:
+        for name in (*TABLES, *DERIVED):
             log.table(name, start_s=0.4, end_s=0.8)
         if refusals:
             raise refusals[0]

@@ -44,7 +44,7 @@ from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import decode, encode
 from onehop.wire.log_reader import LogFile
 from onehop.wire.spoken import action_in
-from radio_proxy.core.radio import Radio
+from radio_proxy.core.bounds import make_radio
 from robot_agent.core.team import team_messages
 from tests.fuzz.damage import damaged
 from tests.onehop.log_forms import ticks_of, with_extreme
@@ -124,7 +124,7 @@ class Messages:
         if why is not None:
             raise DecodeError(why)
         walls = load_map(scenario.map, self._bundle.files)
-        world, radio = World(scenario, walls), Radio(radio_briefing(scenario, walls.segments))
+        world, radio = World(scenario, walls), make_radio(radio_briefing(scenario, walls.segments))
         for _ in range(3):
             encode(radio.carry(world.truth()).record)
             world.observe()
@@ -153,7 +153,7 @@ class Messages:
     def _carry(self, data: bytes) -> None:
         scenario = self._bundle.scenario
         walls = load_map(scenario.map, self._bundle.files)
-        radio = Radio(radio_briefing(scenario, walls.segments))
+        radio = make_radio(radio_briefing(scenario, walls.segments))
         for packed in msgpack.unpackb(data):
             carried = radio.carry(decode(Truth, packed))
             encode(carried.record)

@@ -18,7 +18,8 @@ _MISSION = {
 }  # fmt: skip
 
 _WORDS = {
-    "gains.policy": ("throughput", "constant", "smooth"), "gains.threshold": ("thesis", "ideal"),
+    "gains.policy": ("throughput", "constant", "smooth", "predictive", "lambda2"),
+    "radio.link": ("modelled", "perfect", "none"), "gains.threshold": ("thesis", "ideal"),
     "team.profile": ("team", "thesis"), "team.orphan": ("stop", "solo"),
     "planner.kind": ("escape", "modified", "original"), "radio.preset": ("thesis", "physical", "indoor"),
     "radio.routing": ("direct", "mrsr", "mrdv"), "radio.fading": ("frame", "exchange"),

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from onehop.analysis.message_traces import MessageTrace
 from onehop.analysis.palette import BAD, INK
 from onehop.analysis.report.canvas import mark_turns
 from onehop.analysis.report.report_data import ReportData
@@ -163,12 +164,12 @@ def formation_error(report: ReportData, robot: int) -> Series:
 
 def snr(report: ReportData, robot: int) -> Series:
     """Of each Next that came [dB]."""
-    return _of_next(report, robot, lambda trace: trace.snr_db)
+    return of_next(report, robot, lambda trace: trace.snr_db)
 
 
 def modulation_bit_errors(report: ReportData, robot: int) -> Series:
     """Bit error rate of the modulation on each Next that came, at least BER_FLOOR: it decides loss."""
-    return _of_next(report, robot, lambda trace: max(trace.bit_error_rate, BER_FLOOR))
+    return of_next(report, robot, lambda trace: max(trace.bit_error_rate, BER_FLOOR))
 
 
 def thesis_bit_errors(report: ReportData, robot: int) -> Series:
@@ -176,12 +177,13 @@ def thesis_bit_errors(report: ReportData, robot: int) -> Series:
 
     At least BER_FLOOR. The bits of a packet are those of its MSDU, as in `onehop link`.
     """
-    return _of_next(
+    return of_next(
         report, robot, lambda trace: max(thesis_ber(trace.snr_db, 8 * trace.msdu_bytes), BER_FLOOR)
     )
 
 
-def _of_next(report: ReportData, robot: int, value: Callable[..., float]) -> Series:
+def of_next(report: ReportData, robot: int, value: Callable[[MessageTrace], float]) -> Series:
+    """A value of each Next that came to a robot, at its arrival; a gap where several did not come."""
     period = report.log.scenario.team.next_period
     chosen = [
         (trace.arrival_s, value(trace))

@@ -1,7 +1,7 @@
 """How k_rho follows the throughput of the link to the leader (thesis 3.5). Replaceable policies.
 
 A policy hears one throughput for each Next that came, and 0 for each that did not, and the threshold of
-the slot that the robot has by then.
+the slot that the robot has by then. Policies that steer besides are in files of their own (aim.py).
 """
 
 from collections.abc import Callable
@@ -9,6 +9,8 @@ from typing import Protocol
 
 from onehop.contracts.briefings import Briefing
 from onehop.contracts.plugin_names import GAIN_POLICIES
+from robot_agent.core.motion.lambda2 import Lambda2Gain
+from robot_agent.core.motion.predictive import PredictiveGain
 
 FILTER_SHARE = 0.5
 """Weight of the newest measurement in the smooth policy's filter: two Next periods of memory."""
@@ -76,6 +78,8 @@ BUILT_IN: dict[str, PolicyMaker] = {
     "throughput": ThroughputGain,
     "constant": ConstantGain,
     "smooth": SmoothGain,
+    "predictive": PredictiveGain,
+    "lambda2": Lambda2Gain,
 }
 
 

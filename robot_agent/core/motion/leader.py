@@ -50,6 +50,7 @@ class TeamView(Value, frozen=True):
     gathering: its followers still form up around it. members: all, itself included. column: they drive
     in column. reports: where each follower said that it was; reports_age: since they were asked [s].
     announced: the pose that followers were last told to form up on. may_ask_for_room: see lane.py.
+    pace: share of its speed that the gain policy leaves it.
     """
 
     gathering: bool
@@ -59,6 +60,7 @@ class TeamView(Value, frozen=True):
     reports_age: float
     announced: Pose
     may_ask_for_room: bool
+    pace: float = 1.0
 
 
 class LeaderDecision(Value, frozen=True):
@@ -149,7 +151,9 @@ class LeaderMotion:
         )
 
     def slowed_for_stragglers(self, twist: Twist, team: TeamView, column: bool) -> Twist | None:
-        """The same arc, slower, while somebody straggles and the scenario says so; else None."""
+        """The same arc, slower, while somebody straggles and scenario or policy say so; else None."""
+        if team.pace < 1.0:
+            return Twist(team.pace * twist.v, team.pace * twist.w)
         section = self._briefing.team
         share, announced = section.straggler_speed, team.announced
         if share >= 1.0:

@@ -12,7 +12,7 @@ L3. Lane (lane.py): while a follower stands right before a leader that has asked
     remains. Before L4, so that waiting for room does not count as a jam.
 L4. Jam (jam.py): a leader that gets nowhere among its followers steers around them. Before L5, because
     who slows down in a jam stays in it.
-L5. Stragglers (leader.py): the same arc, slower, if the scenario says so.
+L5. Stragglers (leader.py): the same arc, slower, if the scenario or the gain policy says so.
 
 A follower (`RobotMotion.follow`), where the first that applies decides:
 

@@ -29,6 +29,8 @@ class SlotFinder:
         self._shape = formation((1,))
         self._slot_key: tuple[Pose, tuple[int, ...], bool, bool] | None = None
         self._slot = Pose(0.0, 0.0, 0.0)
+        self._others_key: tuple[Pose, tuple[int, ...], bool] | None = None
+        self._others: tuple[tuple[float, float], ...] = ()
 
     def shape(self, state: TeamState) -> Formation:
         """The formation of the roster in force, a column in a narrow passage."""
@@ -44,6 +46,15 @@ class SlotFinder:
         if key != self._slot_key:
             self._slot_key, self._slot = key, self._placed(state, view, leader)
         return self._slot
+
+    def others(self, state: TeamState, leader: Pose) -> tuple[tuple[float, float], ...]:
+        """The leader, and where the other followers belong by its last pose, map frame [m]."""
+        key = leader, state.roster.members, state.narrow
+        if key != self._others_key:
+            slots = [one for one in self.shape(state).slots if one.robot != state.robot]
+            places = [to_map(leader, slot.x, slot.y) for slot in slots]
+            self._others_key, self._others = key, ((leader.x, leader.y), *places)
+        return self._others
 
     def distance(self, state: TeamState) -> float:
         """How far from the leader the slot of this robot lies [m]."""

@@ -3,7 +3,7 @@
 Which modes (modes.py) a part can show is stated here too; a mode without its part cannot be.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TypeAlias
 
 from onehop.contracts.geometry import Pose
@@ -13,18 +13,31 @@ from robot_agent.core.team.leader_view import LeaderView, Points
 from robot_agent.core.team.team_messages import Command
 
 
+@dataclass(frozen=True, slots=True)
+class Answered:
+    """How a follower's last answer came: SNR of its last hop [dB], over how many hops.
+
+    told: the pose that it answers to.
+    """
+
+    snr_db: float
+    hops: int
+    told: Pose
+
+
 @dataclass(slots=True)
 class Leading:
     """Acts as leader of the roster in force.
 
     told: the pose that followers were last told to form up on. lane: ends of the piece of the way that
-    they are to keep clear [m], or none.
+    they are to keep clear [m], or none. answered: how the last answer of each follower came.
     """
 
     ledger: FollowerLedger
     schedule: CommandSchedule
     told: Pose
     lane: Points = ()
+    answered: dict[int, Answered] = field(default_factory=dict)
 
 
 @dataclass(slots=True)

@@ -26,7 +26,7 @@ from robot_agent.core.team.events import NextMeasured, NextMissed, TeamEvent
 from robot_agent.core.team.leader_view import Points
 from robot_agent.core.team.modes import ModeEvent
 from robot_agent.core.team.outbox import Outbox
-from robot_agent.core.team.part import Following, Joining, Leading, Waiting
+from robot_agent.core.team.part import Answered, Following, Joining, Leading, Waiting
 from robot_agent.core.team.roster import Roster
 from robot_agent.core.team.rules import Meeting, make_rules
 from robot_agent.core.team.state import TeamState
@@ -158,7 +158,7 @@ class TeamProtocol:
         elif isinstance(message, Command):
             self._on_command(now_ns, pose, in_position, message, reception)
         elif isinstance(message, Ack):
-            self._on_ack(now_ns, source, message)
+            self._on_ack(now_ns, reception, message)
         elif not self.rules.beacons:
             self.counters["foreign"] += 1
         elif isinstance(message, Beacon):
@@ -197,11 +197,13 @@ class TeamProtocol:
         ack = Ack(state.roster.epoch, command.sequence, in_position, pose)
         self._outbox.send(reception.source, ack, ACK_MSDU_BYTES)
 
-    def _on_ack(self, now_ns: int, source: int, ack: Ack) -> None:
-        part = self.state.part
+    def _on_ack(self, now_ns: int, reception: Reception, ack: Ack) -> None:
+        part, source = self.state.part, reception.source
         if not isinstance(part, Leading) or not part.ledger.on_ack(source, ack, part.schedule.sequence):
             self.counters["stale"] += 1
-        elif self.rules.beacons:
+            return
+        part.answered[source] = Answered(reception.snr_db, reception.hops, part.told)
+        if self.rules.beacons:
             self._election.catch_up(now_ns, part, ack.epoch)
 
     def _on_handover(self, now_ns: int, pose: Pose, source: int, command: Command) -> None:

@@ -1,11 +1,13 @@
 """k_rho follows the throughput of the link (thesis 3.5)."""
 
+from typing import get_args
+
 import pytest
 
 from onehop.contracts.briefings import robot_briefing
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.scenario import Scenario
-from onehop.contracts.sections import GainsSection, GoalSection, MapSection, TeamSection
+from onehop.contracts.sections import GainPolicyName, GainsSection, GoalSection, MapSection, TeamSection
 from robot_agent.core.motion.gains import make_policy
 from robot_agent.core.robot import required_throughput_bps
 
@@ -49,7 +51,7 @@ def test_smooth_policy_sees_a_steady_fall_before_the_threshold():
     assert smooth[-1] > 1.5
 
 
-@pytest.mark.parametrize("policy", ["throughput", "smooth"])
+@pytest.mark.parametrize("policy", get_args(GainPolicyName))
 def test_gain_stays_within_its_bounds(policy):
     values = course(policy, [0.0, 1e6, 0.3e6, 0.0, 2e6, 0.5e6])
     assert all(1.0 <= gain <= 3.0 for gain in values)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from onehop.analysis import derived
 from onehop.analysis.columns import TABLES, markdown
 
 ROOT = Path(__file__).parents[3]
@@ -21,7 +22,9 @@ def test_the_worked_example_runs(log_path: Path, capsys: pytest.CaptureFixture[s
 
 def test_the_tables_stand_in_the_page_as_they_are_declared() -> None:
     """After a change: print(onehop.analysis.columns.markdown()) is what belongs there."""
-    assert markdown() in PAGE.read_text()
+    page = PAGE.read_text()
+    assert markdown() in page
+    assert derived.markdown() in page
 
 
 @pytest.mark.parametrize("page", ["follow-a-next.md", "follow-a-scan.md"])

@@ -7,6 +7,7 @@ import pytest
 
 from onehop.analysis import Log, open_log
 from onehop.analysis.columns import TABLES
+from onehop.analysis.derived import DERIVED
 from onehop.contracts.errors import InputError, LogError
 from onehop.wire.log_reader import LogFile
 
@@ -125,6 +126,17 @@ def test_every_table_has_its_columns_in_equal_length_even_when_empty(log: Log, n
         declared = [column.name for column in TABLES[name].columns]
         assert list(table) == ["tick", "time_s", *declared]
         assert {len(column) for column in table.values()} == {len(table)}
+
+
+@pytest.mark.parametrize("name", sorted(DERIVED))
+def test_a_computed_table_has_its_columns_whether_or_not_it_is_empty(log: Log, name: str) -> None:
+    whole = log.table(name)
+    for table in (whole, log.table(name, end_s=-1.0)):
+        assert list(table) == ["tick", "time_s", *(column for column, _ in DERIVED[name].columns)]
+        assert {len(column) for column in table.values()} == {len(table)}
+    assert len(whole) > 100
+    part = log.table(name, start_s=2.0, end_s=3.0)
+    assert set(part["time_s"]) == set(whole["time_s"][(whole["time_s"] >= 2) & (whole["time_s"] <= 3)])
 
 
 def test_a_table_that_there_is_not_is_refused_with_the_names_that_there_are(log: Log) -> None:

@@ -1,11 +1,13 @@
 """What is drawn: missions that can be run, the same for a seed, and survivable within the budget."""
 
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from onehop.chaos.swarm import draw_mission
 from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import GainPolicyName
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 
@@ -35,7 +37,7 @@ def test_a_seed_always_draws_the_same(base: Bundle, drawn: list[Scenario]) -> No
 def test_seeds_draw_different_things(drawn: list[Scenario]) -> None:
     assert {len(one.team.robots) for one in drawn} >= set(range(2, 9))
     assert {one.radio.routing for one in drawn} == {"direct", "mrsr", "mrdv"}
-    assert {one.gains.policy for one in drawn} == {"throughput", "smooth", "constant"}
+    assert {one.gains.policy for one in drawn} == set(get_args(GainPolicyName))
     assert {one.map.width for one in drawn} > {100.0}
     assert {fault.kind for one in drawn for fault in one.faults} >= {"kill", "cut", "kidnap", "slow"}
 

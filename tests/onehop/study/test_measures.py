@@ -1,11 +1,14 @@
 """What is measured while a mission runs is what its log says."""
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from onehop.analysis import open_log
+from onehop.analysis.connectivity import Pair, is_connected
+from onehop.analysis.tables import Table
 from onehop.study.mission import MissionOrder, run_mission
 from onehop.wire.log_reader import LogFile, digest
 from tests.onehop.scenes import field
@@ -40,6 +43,19 @@ def test_the_measures_of_a_mission_are_those_of_its_log(tmp_path: Path) -> None:
     control = log.table("control")
     assert row["routing_bytes"] == control["bytes"][control["tick"] == control["tick"].max()].sum()
     assert row["driven_m"] == pytest.approx(np.abs(poses["v"]).sum() * period / 4, rel=0.01)
+    energy, links = log.table("energy"), log.table("links")
+    later = energy.where(energy["tick"] > 0)
+    assert row["drive_j"] == pytest.approx(later["drive_j"].sum() / 4)
+    assert row["radio_j"] == pytest.approx(later["radio_j"].sum() / 4)
+    looks = [links.where(links["tick"] == tick) for tick in np.unique(links["tick"][links["tick"] > 0])]
+    whole = [
+        is_connected(poses["robot"][poses["tick"] == one["tick"][0]].tolist(), _pairs(one))
+        for one in looks
+    ]
+    assert row["connected_share"] == pytest.approx(np.mean(whole))
+    assert 0.0 < row["connected_share"] < 1.0
+    ber = [0.5 * math.exp(-(10 ** (snr_db / 10)) / 6400) for snr_db in arrived["snr_db"]]
+    assert row["ber"] == pytest.approx(np.mean(ber))
     summary = log.summary
     assert summary is not None
     assert row["digest"] == digest(LogFile(path)) == summary["digest"]
@@ -49,6 +65,10 @@ def test_the_measures_of_a_mission_are_those_of_its_log(tmp_path: Path) -> None:
         summary["sim_s"],
     )
     assert row["lost"] >= 1
+
+
+def _pairs(look: Table) -> list[Pair]:
+    return [Pair(*values) for values in look.rows("robot", "other", "snr_db", "linked")]
 
 
 def test_who_drives_alone_follows_nobody(tmp_path: Path) -> None:

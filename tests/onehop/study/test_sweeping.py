@@ -73,7 +73,7 @@ def wanted(
     path.write_text(FIELD)
     every = [*SHORT, *settings]
     base = scenario_file.load(path, every)
-    return Wanted(base, cells(path, every, [axis(over)], seeds[0]), seeds, keep)
+    return Wanted([base], cells(path, every, [axis(over)], seeds[0]), seeds, keep)
 
 
 def rows_of(folder: Path) -> list[Row]:
@@ -147,7 +147,7 @@ def test_more_values_and_more_seeds_are_added_to_what_there_is(tmp_path: Path) -
     ("over", "setting", "says"),
     [
         ("gains.k_rho_max=3,4", "team.size=4", "over differ"),
-        ("gains.k_rho_min=1", "team.size=3", "scenario differ"),
+        ("gains.k_rho_min=1", "team.size=3", "scenarios differ"),
     ],
 )
 def test_rows_of_another_sweep_are_not_mixed_in(tmp_path: Path, over, setting, says) -> None:
