@@ -15,7 +15,7 @@ from typing import Any
 from onehop.scenario import scenario_file
 from onehop.study.mission import MissionOrder, run_mission
 from onehop.study.statistics import estimate
-from robot_agent.core.motion import gains
+from robot_agent.core import robot
 from robot_agent.core.motion.aim import Aim, Point, Report, Situation
 from robot_agent.core.motion.predictive import PredictiveGain
 
@@ -69,7 +69,7 @@ POLICIES: dict[str, type[PredictiveGain]] = {
 
 def missions(options: argparse.Namespace, policy: Callable[..., PredictiveGain]) -> list[dict[str, Any]]:
     """The rows of one policy, by seed."""
-    vars(gains)["PredictiveGain"] = policy
+    vars(robot)["make_policy"] = policy
     hold = f'{{kind="hold", at_s=60, robots=[1, 2, 4, 5, 6], duration_s={options.hold}}}'
     rows = []
     for seed in range(1, options.seeds + 1):

@@ -107,13 +107,20 @@ def robot_briefing(scenario: Scenario, robot: int, incarnation: int) -> Briefing
         silence_s=scenario.clock.silence_s,
         program=program,
         parameters=parameters,
-        goal=scenario.goal,
+        goal=_goal_of(scenario),
         team=_team_of(scenario, robot, program),
         body=scenario.body_of(robot),
         gains=scenario.gains,
         planner=scenario.planner,
         radio=scenario.radio,
     )
+
+
+def _goal_of(scenario: Scenario) -> GoalSection:
+    """The goal; without a link each robot comes alone, and needs room beside those that are there."""
+    if scenario.radio.link == "none":
+        return replace(scenario.goal, tolerance=scenario.room_at_goal)
+    return scenario.goal
 
 
 def _team_of(scenario: Scenario, robot: int, program: str) -> TeamSection:

@@ -102,6 +102,16 @@ class Scenario:
         return team.program, {**team.parameters, **own.parameters}
 
     @property
+    def room_at_goal(self) -> float:
+        """Distance from the goal within which robots that come one by one have arrived [m].
+
+        n discs as wide as the planner's zone need, around the first one, a disc whose radius grows with
+        the root of their number.
+        """
+        others = len(self.team.robots) - 1
+        return self.goal.tolerance + 2.0 * self.planner.inflation * math.sqrt(others)
+
+    @property
     def commands(self) -> dict[int, tuple[str, ...]]:
         """Of the robots that are processes of somebody else's making: what starts them."""
         return {one.id: one.command for one in self.robots if one.command}

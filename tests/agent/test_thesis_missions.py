@@ -39,6 +39,28 @@ def test_both_policies_are_compared_on_the_same_way_with_a_delay_at_60_s(policy:
 
 
 @pytest.mark.slow
+def test_the_predictive_policy_keeps_whom_others_lose_in_a_delay_of_20_s() -> None:
+    """docs/policies.md: on map 1 at 0.3/s, five seeds; here the first two."""
+    held = "faults=[{kind='hold', at_s=60, robots=[1, 2, 4, 5, 6], duration_s=20}]"
+    settings = "gains.k_rho_min=0.3", "clock.limit_s=450", held
+    lost = {
+        policy: [len(mission("map1", seed, f"gains.policy={policy}", *settings).lost) for seed in (1, 2)]
+        for policy in ("constant", "predictive")
+    }
+    assert lost["predictive"] == [0, 0]
+    assert min(lost["constant"]) > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("policy", ["predictive", "lambda2"])
+def test_policies_that_steer_touch_nobody_and_arrive(policy: str) -> None:
+    outcome = mission("map2", 1, f"gains.policy={policy}")
+    assert outcome.outcome == "arrived", outcome.reason
+    assert outcome.arrived == (1, 2, 3, 4, 5, 6)
+    assert outcome.collisions == 0
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["map1", "map2"])
 def test_algorithm_2_brings_the_team_to_the_goal_without_a_saved_path(name: str) -> None:
     outcome = mission(name, 1, "planner.kind=modified", "clock.limit_s=1500")

@@ -1,8 +1,11 @@
 """Robots that are processes of somebody else's making: the same bytes as the program that they port."""
 
+import ast
 import json
 import shutil
 import subprocess
+import sys
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -66,6 +69,30 @@ def test_it_lives_through_what_is_done_to_it(tmp_path: Path) -> None:
     words = ("--set", FAULTS)
     own = digest_of(tmp_path / "own", "--driver", "inline", *words)
     assert digest_of(tmp_path / "bare", *words, *robot_5(BARE)) == own
+
+
+def test_one_that_does_not_die_makes_room_all_the_same(tmp_path: Path) -> None:
+    stubborn = "import os, bare_robot; os.kill = print; raise SystemExit(bare_robot.main())"
+    words = ("--set", 'faults=[{kind="restart", at_s=1.0, robots=[5]}]', "--set", "clock.limit_s=3")
+    digests = [
+        json.loads(onehop("run", SIMPLE, "--json", "--out", tmp_path / f"{n}", *words, *more).stdout)[
+            "digest"
+        ]
+        for n, more in enumerate(
+            [("--driver", "inline"), robot_5(json.dumps(["python", "-c", stubborn]))]
+        )
+    ]
+    assert digests[0] == digests[1]
+
+
+def test_they_know_nothing_of_onehop() -> None:
+    tree = ast.parse((EXAMPLES / "bare_robot.py").read_text())
+    names = [one.names[0].name for one in ast.walk(tree) if isinstance(one, ast.Import)]
+    names += [one.module or "" for one in ast.walk(tree) if isinstance(one, ast.ImportFrom)]
+    foreign = {name.partition(".")[0] for name in names} - sys.stdlib_module_names
+    assert foreign == {"zenoh", "msgpack"}
+    package = tomllib.loads((EXAMPLES / "rust_robot" / "Cargo.toml").read_text())
+    assert package["dependencies"].keys() == {"zenoh", "rmp", "rmpv", "sha2", "libc"}
 
 
 def test_a_robot_in_rust_takes_the_place_of_a_program(digest: str, tmp_path: Path) -> None:

@@ -5,7 +5,8 @@ everyone has stopped elsewhere, or the time is up. Whoever obeys a leader at the
 reach of its formation has arrived; the rest is lost, and the referee says since when and why.
 
 A robot whose program says nothing of a team is judged by where it is, alone: it has arrived when it is
-within the goal's tolerance, and within the room that as many robots as there are need around it.
+within the goal's tolerance, and within the room that as many robots as there are need around it. Without
+a link (radio.link) every robot leads itself, and has arrived within that room as well.
 """
 
 import math
@@ -73,7 +74,8 @@ class Referee:
         }
         self._spacing = scenario.team.spacing
         self._robots = scenario.team.robots
-        self._room = room_at_goal(scenario)
+        self._room = scenario.room_at_goal + _MARGIN
+        self._alone = scenario.radio.link == "none"
         self._limit_ns = round(scenario.clock.limit_s * 1e9)
         self._moved_ns = 0
         self._leadership = LeadershipHistory()
@@ -187,6 +189,8 @@ class Referee:
     def _is_at_goal(self, leader: Presence) -> bool:
         """Whether a leader stands at the goal, or beside what occupies it and says that it arrived."""
         says_so = self._last_notes.get(leader.robot) == "arrived"
+        if self._alone:
+            return self._from_goal(leader.pose) <= self._room
         reach = self._beside[leader.robot] if says_so else self._goal.tolerance
         return self._from_goal(leader.pose) <= reach + _MARGIN
 
@@ -245,16 +249,6 @@ class Referee:
             if by in term.members and after in between:
                 return f"given up by robot {by}{loss_in_words(reason)}"
         return f"dropped from the roster of robot {term.leader}"
-
-
-def room_at_goal(scenario: Scenario) -> float:
-    """Distance from the goal within which a robot without a team has arrived [m].
-
-    n discs as wide as the planner's zone need, around the first one, a disc whose radius grows with the
-    root of their number.
-    """
-    others = len(scenario.team.robots) - 1
-    return scenario.goal.tolerance + 2.0 * scenario.planner.inflation * math.sqrt(others) + _MARGIN
 
 
 def _extent(term: LeadershipTerm, spacing: float) -> float:

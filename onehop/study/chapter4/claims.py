@@ -7,6 +7,7 @@ from onehop.study.chapter4.missions import CONSTANT, VARIABLE
 from onehop.study.chapter4.reported import REPORTED
 from onehop.study.claims import Claim, Expects, Judgement, judge
 from onehop.study.comparison import Where, chosen, difference, mean, strata
+from onehop.study.statistics import estimate
 
 TO_VARIABLE: tuple[Where, Where] = ({"policy": CONSTANT}, {"policy": VARIABLE})
 """From constant to variable k_rho."""
@@ -98,7 +99,11 @@ def ideal_claim(rows: Sequence[Row]) -> Judgement:
     claim = Claim(
         "Without an imposed delay all followers arrive.", "4.2", "lost", Expects.NONE, "robots"
     )
-    return judge(claim, mean(rows, "lost"), len(rows))
+    of_seed: dict[int, list[int]] = {}
+    for row in rows:
+        of_seed.setdefault(row["seed"], []).append(row["lost"])
+    means = [sum(lost) / len(lost) for lost in of_seed.values()]
+    return judge(claim, estimate(means), len(means))
 
 
 def _changed(

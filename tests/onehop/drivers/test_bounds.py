@@ -35,4 +35,4 @@ def test_without_a_link_each_robot_leads_itself_to_the_goal(tmp_path: Path, prof
     outcome = inline.run(field(tmp_path, "radio.link=none", f"profile={profile}"), None)
     assert outcome.outcome == "arrived"
     assert {term.members for term in outcome.leaders} == {(1,), (2,), (3,), (4,)}
-    assert len(outcome.arrived) >= 3
+    assert outcome.arrived == (1, 2, 3, 4)

@@ -1,10 +1,8 @@
-"""`onehop study` as people start it: on one core, on two; stopped, gone on with, refused."""
+"""`onehop study` as people start it: on one core, on two, refused."""
 
 import json
-import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +11,6 @@ import pytest
 from onehop import study
 from onehop.study.chapter4.failing import EXPECTED
 from onehop.study.chapter4.missions import MAPS
-from onehop.study.phase.study import CELLS
-from onehop.study.sweeping import ROWS
 from tests.onehop.scenes import FIELD
 
 NEAR = FIELD.replace("x = 30\ny = 14", "x = 14\ny = 8").replace("size = 4", "size = 6")
@@ -71,28 +67,6 @@ def test_chapter_4_says_the_same_on_one_core_and_on_two(tmp_path: Path) -> None:
     assert page.count("data:image/png;base64,") == 2 + 3 * 6
     figures = {path.suffix for path in (tmp_path / "one" / "figures").iterdir()}
     assert figures == {".png", ".svg"}
-
-
-@pytest.mark.slow
-def test_a_study_that_was_killed_is_gone_on_with_and_no_row_is_there_twice(tmp_path: Path) -> None:
-    rows = tmp_path / "out" / CELLS / ROWS
-    with subprocess.Popen(
-        command("policies", tmp_path, "out", "--jobs", "1"),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    ) as running:
-        while running.poll() is None and (not rows.exists() or rows.read_bytes().count(b"\n") < 4):
-            time.sleep(0.01)
-        running.send_signal(signal.SIGKILL)
-    before = rows.read_text().splitlines()
-    assert len(before) < 17
-    answer = told("policies", tmp_path, "out", "--jobs", "1")
-    after = rows.read_text().splitlines()
-    assert after[: len(before) - 1] == before[:-1]
-    names = [json.loads(line)["name"] for line in after[1:]]
-    assert len(names) == len(set(names)) == answer["missions"] == 16
-    again = told("policies", tmp_path, "out", "--jobs", "1")
-    assert (again["missions_per_s"], without_rate(again)) == (0.0, without_rate(answer))
 
 
 @pytest.mark.slow

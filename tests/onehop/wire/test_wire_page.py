@@ -17,6 +17,7 @@ import pytest
 from onehop.contracts import briefings, messages, sections, team, topics
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.neighbour import Neighbour
 from onehop.contracts.printable import LONGEST
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.values import WIRE_VERSION, Wire
@@ -37,6 +38,7 @@ LAYOUTS: dict[str, type] = {
     "Twist": Twist,
     "Inbox": messages.Inbox,
     "Reception": messages.Reception,
+    "Neighbour": Neighbour,
     "Action": messages.Action,
     "Transmission": messages.Transmission,
     "Note": messages.Note,
