@@ -10,7 +10,8 @@ due, and a follower with the law v = k_rho * rho lags by v_L / k_rho besides. Fo
    and while the team gathers, since everybody waits then.
 4. The leader slows when a follower nears the frontier, where it would hear it too weakly.
 
-docs/policies.md has what each is worth.
+docs/policies.md has what each is worth. Differs: the leader never waits in the thesis (3.8.2), and in a
+delay of 20 s drives out of everybody's reach.
 """
 
 import math
