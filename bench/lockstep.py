@@ -81,7 +81,7 @@ def mission(robots: int, limit: float, folder: Path) -> float:
     bundle = scenario_file.load(SCENARIO, settings)
     arguments = launcher.world_arguments(SCENARIO, settings, None, None, None, None)
     with claimed(folder) as claim:
-        plan = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, claim, True)
+        plan = launcher.plan(bundle, arguments, folder, claim, True)
         return float(launcher.run(plan, lambda _: None)["ticks_per_s"])
 
 

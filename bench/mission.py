@@ -45,7 +45,7 @@ def processes(scenario: Path, settings: list[str], bundle: Bundle, folder: Path,
     """Ticks a second of the lock-step driver, from the first tick to the last."""
     arguments = launcher.world_arguments(scenario, settings, None, None, None, None)
     with claimed(folder) as claim:
-        plan = launcher.LaunchPlan(arguments, bundle.scenario.team.robots, folder, claim, record)
+        plan = launcher.plan(bundle, arguments, folder, claim, record)
         return float(launcher.run(plan, lambda _: None)["ticks_per_s"])
 
 

@@ -28,15 +28,16 @@ from onehop.contracts.elementary import atan2, cos, sin
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist, to_local, to_map, wrap_angle
 from onehop.contracts.messages import BROADCAST, Note, Percept, Transmission
 from onehop.contracts.messages import Reception as Message
+from onehop.contracts.neighbour import Neighbour
 from onehop.contracts.randomness import generator
 from onehop.contracts.ranges import Range
 from onehop.contracts.team import Status
 from onehop.contracts.units import nanoseconds
 
 __all__ = [
-    "BROADCAST", "STANDSTILL", "Action", "Beams", "Briefing", "Message", "NoParameters", "Note",
-    "Percept", "Pose", "Program", "Range", "Status", "Transmission", "Twist", "atan2", "broadcast",
-    "cos", "generator", "send", "sin", "to_local", "to_map", "wrap_angle",
+    "BROADCAST", "STANDSTILL", "Action", "Beams", "Briefing", "Message", "Neighbour", "NoParameters",
+    "Note", "Percept", "Pose", "Program", "Range", "Status", "Transmission", "Twist", "atan2",
+    "broadcast", "cos", "generator", "send", "sin", "to_local", "to_map", "wrap_angle",
 ]  # fmt: skip
 
 

@@ -5,6 +5,8 @@ from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.messages import Truth
 from onehop.node import startup
 from onehop.node.bus import GONE, Bus
+from onehop.plugins import plugged_radio
+from onehop.programs.find import search_in
 from onehop.wire.batch import pack_tick
 from onehop.wire.codec import decode, encode
 from onehop.wire.journal import WireMessage
@@ -14,11 +16,13 @@ from radio_proxy.core.bounds import Carrier, make_radio
 def main() -> int:
     parser = startup.arguments("radio_proxy", "The radio between the robots of a mission.")
     startup.add_connect(parser)
+    parser.add_argument("--programs", default="", metavar="DIR", help="where to look for plugins")
     options = parser.parse_args()
     startup.start(options)
+    search_in(options.programs)
     with startup.connect(options, topics.RADIO) as bus:
         bus.watch(topics.WORLD)
-        radio = make_radio(decode(RadioBriefing, startup.briefing(bus, topics.RADIO)))
+        radio = make_radio(plugged_radio(decode(RadioBriefing, startup.briefing(bus, topics.RADIO))))
         startup.calm_garbage_collector()
         return _serve(bus, radio)
 

@@ -20,9 +20,9 @@ ALLOWED = [
     ("closed_forms", ANY, ANY, "formulas for tables and tests; no mission imports them"),
     ("tangent_bug", ANY, ANY, "the baseline of a benchmark; no mission imports it"),
     (
-        "draws",
-        "normal",
-        "self._stream.standard_normal(_BLOCK)",
+        "randomness",
+        "normals",
+        "stream.standard_normal(count)",
         "rounded to a multiple of 2**-20 at once",
     ),
     ("reception", ANY, "self._draws.normal()", "the rounded draws of `Draws`, not those of a generator"),

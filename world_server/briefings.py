@@ -7,6 +7,7 @@ from onehop.contracts import topics
 from onehop.contracts.arrays import FloatArray
 from onehop.contracts.briefings import LogBriefing, radio_briefing, robot_briefing
 from onehop.scenario.bundle import Bundle
+from onehop.scenario.link_trace import link_trace
 from onehop.wire.codec import encode
 
 ANSWERS = 20
@@ -30,7 +31,9 @@ class Briefings:
         files = tuple(sorted(bundle.files.items()))
         log = LogBriefing(driver, bundle.scenario_json(), files, bundle.folder)
         self._others = {
-            topics.config(topics.RADIO): encode(radio_briefing(bundle.scenario, walls)),
+            topics.config(topics.RADIO): encode(
+                radio_briefing(bundle.scenario, walls, link_trace(bundle))
+            ),
             topics.config(topics.RECORDER): encode(log),
         }
 

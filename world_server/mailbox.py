@@ -67,13 +67,11 @@ class Mailbox:
                 return False
             received = self._bus.receive_by(min(deadline, now + POLL_S))
             if received is not None:
-                self._hand_over(*received)
+                what, data = received
+                reader = self._readers.get(what)
+                if reader is None:
+                    self._on_stray(what.partition("/")[0])
+                else:
+                    reader(data)
             now = time.monotonic()
         return True
-
-    def _hand_over(self, what: str, data: bytes) -> None:
-        reader = self._readers.get(what)
-        if reader is None:
-            self._on_stray(what.partition("/")[0])
-        else:
-            reader(data)

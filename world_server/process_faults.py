@@ -99,7 +99,9 @@ class ProcessFaults:
         name = topics.robot_name(robot)
         self._roll.expect_again(name, incarnation)
         self._end(robot)
-        self._mail.wait(lambda: name not in self._roll.present, RESTART_S)
+        if not self._mail.wait(lambda: name not in self._roll.present, RESTART_S):
+            self._tell(topics.KILL, robot)  # a process of somebody else's making need not obey
+            self._mail.wait(lambda: name not in self._roll.present, RESTART_S)
         self._bus.let_in(name)
         self._tell(topics.RESTART, robot)
         with self._open_briefings():

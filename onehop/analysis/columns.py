@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import Action, RadioRecord, Truth
 
 Column = npt.NDArray[Any]
@@ -63,9 +62,11 @@ def _seconds_if_any(values: Sequence[int]) -> Column:
 
 
 def _matrix(scans: Sequence[npt.NDArray[np.float32]]) -> Column:
-    if len({len(scan) for scan in scans}) > 1:
-        raise DecodeError("laser scans of different length")
-    return np.array(scans, dtype=np.float32)
+    longest = max(map(len, scans), default=0)
+    matrix = np.full((len(scans), longest), np.nan, dtype=np.float32)
+    for row, scan in enumerate(scans):
+        matrix[row, : len(scan)] = scan
+    return matrix
 
 
 INTEGER = Kind(_integers)
@@ -88,7 +89,7 @@ SECONDS_IF_ANY = Kind(_seconds_if_any)
 """From ns; a negative time stands for never, and is nan."""
 
 RANGES = Kind(_matrix)
-"""Laser scans as a matrix, (rows, n_beams) float32 [m]."""
+"""Laser scans as a matrix, (rows, n_beams) float32 [m]; nan behind the beams of who has fewer."""
 
 
 class ColumnSpec(NamedTuple):
@@ -217,6 +218,13 @@ TABLES: dict[str, TableSpec] = {
             _C("service_start_s", SECONDS, "service_start_ns"), _C("arrival_s", SECONDS, "arrival_ns"),
             _C("hops", INTEGER), _C("attempts", INTEGER), _C("snr_db", REAL),
             _C("bit_error_rate", REAL), _C("msdu_bytes", INTEGER), _C("payload", OBJECT),
+        ),
+    ),
+    "neighbours": TableSpec(
+        "a robot that another one's card heard (`radio.neighbours`)", "rx/", attrgetter("neighbours"),
+        (
+            _C("robot", INTEGER, BUS_KEY), _C("neighbour", INTEGER, "robot"), _C("snr_db", REAL),
+            _C("rssi_dbm", REAL), _C("heard_s", SECONDS, "time_ns"), _C("frames", INTEGER),
         ),
     ),
     "transmit_requests": TableSpec(

@@ -18,9 +18,8 @@ from onehop.contracts.messages import Truth
 from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.bounds import PERFECT_SNR_DB
 from radio_proxy.core.error_rates import CERTAIN_SINR_DB, frame_success
-from radio_proxy.core.link_budget import link_budget
-from radio_proxy.core.propagation import OWN_DB, SILENT_DB, Propagation
-from radio_proxy.core.shadowing import shadowing
+from radio_proxy.core.path_loss import OWN_DB, SILENT_DB
+from radio_proxy.core.radio import make_propagation
 
 EVERY_S = 0.5
 """Time from one look at the links to the next [s]: a robot moves by half a metre or so meanwhile."""
@@ -42,13 +41,13 @@ class Connectivity:
 
     def __init__(self, briefing: RadioBriefing, frame_bytes: int) -> None:
         robots = tuple(RobotId(robot) for robot in sorted(briefing.robots))
-        budget = link_budget(briefing.radio)
-        self._propagation = Propagation(budget, robots, briefing.walls, shadowing(budget, briefing.seed))
+        self._propagation = make_propagation(briefing)
         self._station = dict(zip(robots, self._propagation.stations, strict=True))
         self._link = briefing.radio.link
         bits = 8.0 * (frame_bytes + briefing.radio.mac_header_bytes)
         error_free_db = _half_without_error_db(briefing.radio.rate_mbps, bits)
-        self._least_db = max(budget.receive_threshold_db, error_free_db)
+        self._least_db = max(briefing.radio.least_snr_db, error_free_db)
+        self._period_ns = briefing.period_ns
         self._every = max(1, round(EVERY_S * 1e9 / briefing.period_ns))
 
     def is_due(self, tick: int) -> bool:
@@ -58,7 +57,8 @@ class Connectivity:
     def pairs(self, truth: Truth) -> list[Pair]:
         """All pairs of present robots."""
         propagation = self._propagation
-        propagation.update(truth.present, truth.cuts, truth.jams)
+        tick = truth.time_ns - self._period_ns, truth.time_ns
+        propagation.update(truth.present, truth.cuts, truth.jams, tick)
         present = [RobotId(one.robot) for one in truth.present]
         found = []
         for place, robot in enumerate(present):

@@ -11,7 +11,9 @@ from onehop.analysis.tables import Row, Table
 from onehop.contracts.briefings import radio_briefing
 from onehop.contracts.messages import RadioRecord, Truth
 from onehop.maps.map_file import load_map
+from onehop.plugins import plugged_radio
 from onehop.scenario.bundle import Bundle
+from onehop.scenario.link_trace import link_trace
 
 Watched = Iterator[tuple[Truth, RadioRecord]]
 """Ground truth of each tick and what the radio did in it."""
@@ -45,7 +47,8 @@ def connectivity_of(bundle: Bundle) -> Connectivity:
     """The links of a mission, in the radio and on the map of its scenario."""
     scenario = bundle.scenario
     walls = load_map(scenario.map, bundle.files).segments
-    return Connectivity(radio_briefing(scenario, walls), scenario.team.next_msdu_bytes)
+    briefing = plugged_radio(radio_briefing(scenario, walls, link_trace(bundle)))
+    return Connectivity(briefing, scenario.team.next_msdu_bytes)
 
 
 DERIVED: dict[str, DerivedSpec] = {

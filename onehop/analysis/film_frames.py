@@ -26,6 +26,9 @@ TRAIL_S = 15.0
 TRAIL_ALPHA = 0.6
 """Opacity of a trail."""
 
+LEAST_BODY = 8.4
+"""Diameter of a robot in the picture at least [points]: smaller bodies could not be seen."""
+
 Pixels = npt.NDArray[np.uint8]
 
 
@@ -58,13 +61,17 @@ class FilmFrames:
         """Artists that are moved for each frame."""
         colours = [self._colours[robot] for robot in self._log.robots]
         axes: Any = self._axes
+        metre = axes.transData.transform((1.0, 0.0)) - axes.transData.transform((0.0, 0.0))
+        points = 72.0 * float(metre[0]) / axes.figure.dpi
+        bodies = [2.0 * points * body.radius for body in self._log.scenario.bodies]
         self._trails = [
             Line2D([], [], color=colour, linewidth=1.3, alpha=TRAIL_ALPHA, zorder=3)
             for colour in colours
         ]
         self._links = LineCollection([], colors=INK, linewidths=0.7, alpha=0.6, zorder=4)
         self._bodies: PathCollection = axes.scatter(
-            np.zeros(len(colours)), np.zeros(len(colours)), s=70, c=colours, edgecolors="white",
+            np.zeros(len(colours)), np.zeros(len(colours)), c=colours, edgecolors="white",
+            s=[max(LEAST_BODY, size) ** 2 for size in bodies],
             linewidths=0.8, zorder=5,
         )  # fmt: skip
         self._noses = LineCollection([], colors=INK, linewidths=1.4, zorder=6)

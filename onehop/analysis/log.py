@@ -163,7 +163,19 @@ class Log:
         for name, table in tables.items():
             for column in _OF_THE_TEAM.get(name, ()):
                 self._check_team(name, table[column])
+        if "scans" in tables:
+            self._check_scans(tables["scans"])
         return tables
+
+    def _check_scans(self, table: Table) -> None:
+        """Each scan has the beams of its robot's laser: behind them a matrix of several is nan."""
+        beams = {robot: self.scenario.body_of(robot).laser_beams for robot in self.robots}
+        seen = np.array([beams.get(robot, 0) for robot in table["robot"].tolist()], dtype=np.int64)
+        given = (~np.isnan(table["ranges"])).sum(axis=1) if len(table) else seen
+        for row in np.flatnonzero(given != seen).tolist():
+            robot, beam = table["robot"][row], "beams that hit something or nothing"
+            what = f"a scan of {given[row]} {beam}, of robot {robot} that has {seen[row]}"
+            raise forged(self.path, what)
 
     def _check_team(self, name: str, robots: Column) -> None:
         strangers = robots[~np.isin(robots, self.robots)]
@@ -178,6 +190,7 @@ _OF_THE_TEAM = {
     "contacts": ("robot",),
     "verdicts": ("source",),
     "receptions": ("source",),
+    "neighbours": ("neighbour",),
 }
 """Columns in which world and radio name robots of the team, and nobody else."""
 

@@ -10,6 +10,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Circle
 from matplotlib.patheffects import withStroke
 
 from onehop.analysis.ground import draw_ground
@@ -85,7 +86,8 @@ def draw_mission(axes: Axes, log: Log, tables: dict[str, Table], name_holds: boo
             if kind == "kidnap" and robot in robots
         ]
         _draw_path(axes, poses.of(robot), carried, colour)
-    _draw_formations(axes, poses, status, colours)
+    radii = {robot: log.scenario.body_of(robot).radius for robot in log.robots}
+    _draw_formations(axes, poses, status, colours, radii)
     _draw_holds(axes, poses, colours, name_holds)
     for departure in departures(poses, tables["departures"]):
         _draw_departure(axes, departure, colours[departure.robot])
@@ -127,7 +129,9 @@ def _snapshots(status: Table) -> list[float]:
     return [*[time for time in regular if time < end_s - SNAPSHOT_S / 4], end_s]
 
 
-def _draw_formations(axes: Axes, poses: Table, status: Table, colours: dict[int, str]) -> None:
+def _draw_formations(
+    axes: Axes, poses: Table, status: Table, colours: dict[int, str], radii: dict[int, float]
+) -> None:
     links: list[tuple[tuple[float, float], tuple[float, float]]] = []
     known = np.unique(status["tick"])
     stale: tuple[float, float] = (np.inf, np.inf)
@@ -143,7 +147,7 @@ def _draw_formations(axes: Axes, poses: Table, status: Table, colours: dict[int,
             if robot != leader and leader in places and robot in places:
                 links.append((places[leader], places[robot]))
         for row, robot in enumerate(here["robot"].tolist()):
-            _draw_robot(axes, here, row, colours[robot])
+            _draw_robot(axes, here, row, colours[robot], radii[robot])
         stale = _label_time(axes, time_s, said, places, stale)
     axes.add_collection(LineCollection(links, colors=INK, linewidths=0.6, alpha=0.55, zorder=3.5))
 
@@ -164,7 +168,10 @@ def _label_time(
     return spot
 
 
-def _draw_robot(axes: Axes, here: Table, row: int, colour: str) -> None:
+def _draw_robot(axes: Axes, here: Table, row: int, colour: str, radius: float) -> None:
+    """A triangle that can be seen on any map, and the body as large as it is [m]."""
+    place = float(here["x"][row]), float(here["y"][row])
+    axes.add_patch(Circle(place, radius, facecolor="none", edgecolor=colour, linewidth=0.8, zorder=5))
     heading = float(here["heading"][row])
     axes.plot(
         here["x"][row], here["y"][row], marker=(3, 0, np.degrees(heading) - 90.0), markersize=7.5,

@@ -23,6 +23,9 @@ from onehop.scenario.as_toml import as_toml
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import claimed
 
+LINKS = "measured-links.csv"
+"""Name of a trace of measured links beside a scenario that stands for itself."""
+
 LIMIT_S = 600.0
 """Wall-clock time that a mission may take [s]."""
 
@@ -48,17 +51,27 @@ def run_as_processes(bundle: Bundle, folder: Path) -> dict[str, Any]:
 
 
 def write_scenario(bundle: Bundle, path: Path, comment: str = "") -> Path:
-    """Write a mission as a scenario file, with the map's files beside it."""
+    """Write a mission as a scenario file, with the map's files beside it.
+
+    The programs of its robots stay where they are, and the file says where that is.
+    """
+    scenario = bundle.scenario
+    if bundle.folder and scenario.has_own_programs():
+        scenario = replace(scenario, programs=bundle.folder)
     for name, data in bundle.files.items():
         if not Path(name).is_absolute():
             (path.parent / name).parent.mkdir(parents=True, exist_ok=True)
             (path.parent / name).write_bytes(data)
-    path.write_text(as_toml(bundle.scenario, comment), encoding="utf-8")
+    path.write_text(as_toml(scenario, comment), encoding="utf-8")
     return path
 
 
 def self_contained(bundle: Bundle, where: str) -> Bundle:
-    """The same mission with its map's file beside it. Raises ScenarioError if it cannot be there."""
+    """The same mission with its map's file and its links beside it.
+
+    Raises ScenarioError if they cannot be there.
+    """
+    bundle = _with_links_beside(bundle)
     own = bundle.scenario.map
     if not own.file:
         return bundle
@@ -68,7 +81,16 @@ def self_contained(bundle: Bundle, where: str) -> Bundle:
             raise ScenarioError(f"{where}: map.file", f"its image is {printable(name, 80)}", remedy)
     beside = Path(own.file).name
     files = {beside if name == own.file else name: data for name, data in bundle.files.items()}
-    return Bundle(replace(bundle.scenario, map=replace(own, file=beside)), files)
+    return replace(bundle, scenario=replace(bundle.scenario, map=replace(own, file=beside)), files=files)
+
+
+def _with_links_beside(bundle: Bundle) -> Bundle:
+    """The same mission with its trace of measured links as LINKS."""
+    radio = bundle.scenario.radio
+    if not radio.links:
+        return bundle
+    files = {LINKS if name == radio.links else name: data for name, data in bundle.files.items()}
+    return Bundle(replace(bundle.scenario, radio=replace(radio, links=LINKS)), files)
 
 
 def main() -> None:
@@ -78,10 +100,10 @@ def main() -> None:
     parser.add_argument("--lifeline", type=int, required=True)
     options = parser.parse_args()
     lifeline.hold(options.lifeline)
-    robots = scenario_file.load(options.scenario).scenario.team.robots
+    bundle = scenario_file.load(options.scenario)
     with claimed(options.folder) as claim:
         arguments = launcher.world_arguments(options.scenario, (), None, None, None, None)
-        plan = launcher.LaunchPlan(arguments, robots, options.folder, claim, record=True)
+        plan = launcher.plan(bundle, arguments, options.folder, claim, record=True)
         print(json.dumps(launcher.run(plan, lambda _: None)))
 
 

@@ -26,10 +26,11 @@ def why_it_should_have(bundle: Bundle, summary: dict[str, Any], end: Disturbance
     bodies = [(one.pose.x, one.pose.y) for one in end.present if one.robot not in end.whole]
     bodies += end.graves.values()
     goal = scenario.goal.x, scenario.goal.y
-    radius = 2.0 * scenario.robot.radius + scenario.planner.inflation
+    radius = 2.0 * max(body.radius for body in scenario.bodies) + scenario.planner.inflation
     ways = places.ways_past(goal, bodies, radius)
     way = min(ways.length((one.pose.x, one.pose.y)) for one in whole)
-    had_time = summary["sim_s"] - quiet_s >= SLACK_S + WAY_FACTOR * way / scenario.robot.leader_speed
+    speed = min(body.leader_speed for body in scenario.bodies)
+    had_time = summary["sim_s"] - quiet_s >= SLACK_S + WAY_FACTOR * way / speed
     is_at_limit = summary["sim_s"] >= scenario.clock.limit_s
     if math.isinf(way) or (is_at_limit and not had_time):
         return None

@@ -72,7 +72,7 @@ class _Search:
             raise _SpentError
         self.runs += 1
         files = self.bundle.files if candidate.map.file else {}
-        bundle = Bundle(candidate, files)
+        bundle = replace(self.bundle, scenario=candidate, files=files)
         for failure in self._try(bundle, self.failure.property).failures:
             if _cause(failure) == _cause(self.failure):
                 self.bundle, self.failure = bundle, failure
@@ -155,7 +155,8 @@ def _of_robots(scenario: Scenario, robots: tuple[int, ...]) -> Scenario:
     ids = () if robots == tuple(range(1, len(robots) + 1)) else robots
     team = replace(scenario.team, size=len(robots), ids=ids)
     faults = tuple(filter(None, (_fault_of(fault, robots) for fault in scenario.faults)))
-    return replace(scenario, team=team, faults=faults)
+    own = tuple(one for one in scenario.robots if one.id in robots)
+    return replace(scenario, team=team, robots=own, faults=faults)
 
 
 def _fault_of(fault: FaultSection, robots: tuple[int, ...]) -> FaultSection | None:
@@ -192,8 +193,8 @@ _DEFAULTS: dict[str, Any] = {
     "planner": PlannerSection(),
     "clock": ClockSection(),
 }
-_KEPT = ("size", "ids", "profile", "limit_s")
-"""Keys that other steps shrink, or that say what is promised at all."""
+_KEPT = ("size", "ids", "profile", "program", "limit_s")
+"""Keys that other steps shrink, or that say what is promised at all, or who is to keep it."""
 
 
 def _usual_values(search: _Search) -> bool:

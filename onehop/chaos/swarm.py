@@ -70,6 +70,7 @@ def draw_mission(base: Bundle, seed: int, budget: bool) -> Bundle:
         seed=seed,
         team=team,
         robot=robot,
+        robots=tuple(one for one in scenario.robots if one.id in team.robots),
         gains=_gains(stream(seed, "gains"), scenario.gains),
         radio=_radio(stream(seed, "radio"), scenario.radio),
         start=StartSection(),
@@ -79,15 +80,19 @@ def draw_mission(base: Bundle, seed: int, budget: bool) -> Bundle:
     places = Places(walls, drawn.planner.inflation)
     ways = places.ways_to((drawn.goal.x, drawn.goal.y))
     way = ways.length((drawn.start.x, drawn.start.y))
+    slowest = min(body.leader_speed for body in drawn.bodies)
     until_s = round(float(stream(seed, "until").uniform(*CHAOS_S)), 1)
     clock = dataclasses.replace(
         drawn.clock,
-        limit_s=math.ceil(
-            until_s + team.setup_timeout + SLACK_S + WAY_FACTOR * way / robot.leader_speed
-        ),
+        limit_s=math.ceil(until_s + team.setup_timeout + SLACK_S + WAY_FACTOR * way / slowest),
     )
     faults = draw_faults(seed, team.robots, places, ways, until_s, budget)
-    return Bundle(dataclasses.replace(drawn, clock=clock, faults=faults), files)
+    own = tuple(one for one in drawn.robots if one.id in team.robots)
+    return dataclasses.replace(
+        base,
+        scenario=dataclasses.replace(drawn, clock=clock, faults=faults, robots=own),
+        files=files,
+    )
 
 
 def _team(random: np.random.Generator, own: TeamSection) -> TeamSection:
@@ -126,6 +131,7 @@ def _gains(random: np.random.Generator, own: GainsSection) -> GainsSection:
 def _radio(random: np.random.Generator, own: Any) -> Any:
     return dataclasses.replace(
         own,
+        links="",  # of a team that is not the one that is drawn
         preset=_one(random, "thesis", "thesis", "thesis", "physical", "indoor"),
         routing=_one(random, "mrdv", "mrsr", "direct"),
         rate_mbps=_one(random, 1.0, 1.0, 2.0, 5.5, 11.0),

@@ -7,9 +7,10 @@ from itertools import pairwise
 from onehop.checking.airtime import Airtimes
 from onehop.checking.findings import Findings
 from onehop.checking.invariants import FAULT_BIT
-from onehop.checking.reach import Budget
+from onehop.checking.reach import Budget, measured
 from onehop.checking.snapshot import ARRIVES, Snapshot
 from onehop.contracts import topics
+from onehop.contracts.link_trace import LinkTrace
 from onehop.contracts.messages import BROADCAST, Cut, DeliveryStatus, Truth, Verdict
 from onehop.contracts.scenario import Scenario
 
@@ -26,11 +27,12 @@ OVERHEAD_NS = 2_000_000
 class FaultyAir:
     """Judges what arrives while the air is disturbed."""
 
-    def __init__(self, findings: Findings, scenario: Scenario) -> None:
+    def __init__(self, findings: Findings, scenario: Scenario, trace: LinkTrace | None = None) -> None:
         self._findings = findings
         self._period_ns = scenario.clock.period_ns
         self._airtimes = Airtimes(scenario.radio)
         self._budget = Budget(scenario.radio)
+        self._measured = measured(trace, scenario.radio, self._budget)
         self._before: Truth | None = None
         self._cut_since: dict[tuple[int, int], int] = {}
 
@@ -74,6 +76,8 @@ class FaultyAir:
         """What arrives in a jam has no SNR that the jam would not leave it."""
         if self._before is None or not self._before.jams or len(verdict.path) < 2:
             return
+        if not self._budget.is_known:
+            return
         sender, receiver = verdict.path[-2:]
         here, there = now.present.get(receiver), now.present.get(sender)
         if here is None or there is None:
@@ -82,7 +86,11 @@ class FaultyAir:
         rise_db = min(self._budget.jam_rise_db(one, x, y) for one in (truth, self._before))
         distance = math.hypot(x - there.pose.x, y - there.pose.y)
         fade_db = SIGMAS * self._budget.shadowing_db + self._budget.best_db + MARGIN_DB
-        most_db = self._budget.mean_snr_at(distance) - rise_db + fade_db
+        mean_db = self._budget.mean_snr_at(distance)
+        if self._measured is not None:
+            times = (truth.time_ns, self._before.time_ns)
+            mean_db = max(self._measured.mean_db(sender, receiver, time, mean_db) for time in times)
+        most_db = mean_db - rise_db + fade_db
         if rise_db > 0.0 and verdict.snr_db > most_db:
             what = (
                 f"robot {receiver} is jammed and receives robot {sender} at {verdict.snr_db:.1f} dB; "

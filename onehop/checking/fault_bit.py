@@ -23,7 +23,7 @@ from onehop.contracts.messages import Corruption, Cut, Jam, Presence, Slow, Trut
 from onehop.contracts.scenario import Scenario
 
 BESIDE = 20
-"""Bodies' radii within which a kidnapped robot is put down where somebody else stands."""
+"""Radii of the largest body within which a kidnapped robot is put down where somebody else stands."""
 
 State = int | Cut | Jam | Corruption | Slow
 
@@ -37,7 +37,7 @@ class FaultBit:
         self._force = ForceField()
         self._robots = scenario.team.robots
         self._period_ns = scenario.clock.period_ns
-        self._beside = BESIDE * scenario.robot.radius
+        self._beside = BESIDE * max(body.radius for body in scenario.bodies)
         self._before: dict[int, Presence] = {}
         self._killed: dict[int, int] = {}
         self._is_known = True

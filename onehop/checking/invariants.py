@@ -73,3 +73,9 @@ WITHOUT_TEAM: dict[str, str] = dict.fromkeys(
     "no robot said anything of a team: its program has none",
 )
 """Why nothing was asked of a team in a mission of other programs."""
+
+WITH_ANOTHER_PROPAGATION: dict[str, str] = dict.fromkeys(
+    (ONE_LEADER, ONE_TEAM, RE_ELECTION),
+    "who hears whom is a plugin's word (radio.propagation), and not worked out anew",
+)
+"""What is not asked where the checker cannot tell links."""

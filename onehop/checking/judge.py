@@ -25,16 +25,19 @@ from onehop.checking.invariants import (
     SHAPE,
     SILENCE,
     UNEXERCISED,
+    WITH_ANOTHER_PROPAGATION,
     WITHOUT_TEAM,
 )
 from onehop.checking.leaders import Leadership
 from onehop.checking.motion import Collisions, Motion
 from onehop.checking.radio import RadioIntegrity
+from onehop.checking.reach import is_known
 from onehop.checking.snapshot import Snapshot, snapshot
 from onehop.checking.team import Team
 from onehop.checking.voice import Voices
 from onehop.contracts.errors import LogError
 from onehop.scenario.bundle import Bundle
+from onehop.scenario.link_trace import link_trace
 from onehop.wire.journal import WireMessage
 from onehop.wire.log_reader import LoggedTick
 
@@ -92,7 +95,8 @@ def judge(
     scenario, summary = log.bundle.scenario, log.summary
     wanted = frozenset(only) or frozenset(INVARIANTS)
     findings = Findings(wanted, kept)
-    period_ns, robots = scenario.clock.period_ns, scenario.team.robots
+    period_ns = scenario.clock.period_ns
+    trace = link_trace(log.bundle, "the log's scenario")
     completeness = Completeness(findings, period_ns)
     digest = DigestCheck(findings)
     collisions = Collisions(findings, scenario)
@@ -100,12 +104,12 @@ def judge(
         check
         for names, check in (
             ((COMPLETE,), completeness),
-            ((OWN_VOICE, SILENCE), Voices(findings, robots)),
+            ((OWN_VOICE, SILENCE), Voices(findings, scenario)),
             ((MEDIAN, SHAPE, EPOCHS), Team(findings, scenario.team)),
-            ((ONE_LEADER, ONE_TEAM, RE_ELECTION), Leadership(findings, scenario)),
+            ((ONE_LEADER, ONE_TEAM, RE_ELECTION), Leadership(findings, scenario, trace)),
             ((RADIO_INTEGRITY,), RadioIntegrity(findings, scenario.radio, period_ns)),
             ((FAULT_BIT,), FaultBit(findings, scenario)),
-            ((FAULT_BIT,), FaultyAir(findings, scenario)),
+            ((FAULT_BIT,), FaultyAir(findings, scenario, trace)),
             ((NO_COLLISION,), collisions),
             ((MOTION,), Motion(findings, scenario)),
         )
@@ -125,6 +129,8 @@ def judge(
         is_whole = summary is not None and summary["ticks"] == reading.count
         collisions.finish(summary, is_whole)
     reasons = {**UNEXERCISED, **(NOT_IN_THESIS if scenario.team.profile == "thesis" else {})}
+    if not is_known(scenario.radio):
+        reasons |= WITH_ANOTHER_PROPAGATION
     if reading.count and not reading.has_team:
         reasons |= WITHOUT_TEAM
     return _report(findings, reasons, reading.count)

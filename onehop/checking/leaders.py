@@ -12,6 +12,7 @@ from onehop.checking.findings import Exhibit, Findings
 from onehop.checking.invariants import ONE_LEADER, ONE_TEAM, RE_ELECTION
 from onehop.checking.reach import Links
 from onehop.checking.snapshot import Snapshot
+from onehop.contracts.link_trace import LinkTrace
 from onehop.contracts.messages import Truth
 from onehop.contracts.printable import ids_in_words
 from onehop.contracts.scenario import Scenario
@@ -50,7 +51,7 @@ class _Vacancy:
 class Leadership:
     """Watches who acts as leader, and who could hear it."""
 
-    def __init__(self, findings: Findings, scenario: Scenario) -> None:
+    def __init__(self, findings: Findings, scenario: Scenario, trace: LinkTrace | None = None) -> None:
         team, period_ns = scenario.team, scenario.clock.period_ns
         self._findings = findings
         self._is_team_profile = team.profile == "team"
@@ -63,7 +64,7 @@ class Leadership:
         self._patience = team.leader_timeout * 1e9 / period_ns
         successor = team.successor_timeout if self._is_team_profile else team.leader_timeout
         self._successor_patience = successor * 1e9 / period_ns
-        self._links = Links(team.robots, scenario.radio, next_ns)
+        self._links = Links(team.robots, scenario.radio, next_ns, trace)
         self._statuses: dict[int, Status] = {}
         self._acting_since: dict[int, int] = {}
         self._sound_since: dict[int, int] = {}

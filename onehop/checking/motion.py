@@ -30,7 +30,7 @@ class Motion:
     def __init__(self, findings: Findings, scenario: Scenario) -> None:
         self._findings = findings
         self._period = scenario.clock.period_ns / 1e9
-        self._body = scenario.robot
+        self._bodies = dict(zip(scenario.team.robots, scenario.bodies, strict=True))
         self._effects = Effects()
         self._poses: dict[int, Pose] = {}
         self._driven: dict[int, tuple[float, float]] = {}
@@ -59,8 +59,9 @@ class Motion:
         """
         if effect is None or presence.held or effect.incarnation != presence.incarnation:
             return 0.0, 0.0
-        v = min(abs(effect.twist.v), self._body.max_speed)
-        w = min(abs(effect.twist.w), self._body.max_turn_rate)
+        body = self._bodies[presence.robot]
+        v = min(abs(effect.twist.v), body.max_speed)
+        w = min(abs(effect.twist.w), body.max_turn_rate)
         return v * self._period, w * self._period
 
     def _judge(
@@ -92,8 +93,10 @@ class Collisions:
 
     def __init__(self, findings: Findings, scenario: Scenario) -> None:
         self._findings = findings
-        self._radius = scenario.robot.radius
-        self._last_drive = scenario.robot.max_speed * scenario.clock.period_ns / 1e9
+        bodies = dict(zip(scenario.team.robots, scenario.bodies, strict=True))
+        period_s = scenario.clock.period_ns / 1e9
+        self._radius = {robot: body.radius for robot, body in bodies.items()}
+        self._last_drive = {robot: body.max_speed * period_s for robot, body in bodies.items()}
         self._walls = wall_segments(scenario.map)
         self._bodies: dict[int, tuple[float, float]] = {}
         self._contacts = 0
@@ -125,16 +128,17 @@ class Collisions:
         if not self._bodies:
             return
         robots = list(self._bodies)
-        drives = np.array([0.0 if robot in now.present else self._last_drive for robot in robots])
+        drives = np.array([0.0 if robot in now.present else self._last_drive[robot] for robot in robots])
+        radii = np.array([self._radius[robot] for robot in robots])
         places = np.array(list(self._bodies.values()))
         apart = places[:, None, :] - places[None, :, :]
-        gaps = np.hypot(apart[..., 0], apart[..., 1]) - 2.0 * self._radius
+        gaps = np.hypot(apart[..., 0], apart[..., 1]) - (radii[:, None] + radii[None, :])
         doubt = ROUNDING + drives[:, None] + drives[None, :]
         for a, b in np.argwhere(np.triu(gaps < -doubt, k=1)).tolist():
             pair = robots[a], robots[b]
             self._report_overlap(now, pair, f"the bodies of robots {pair[0]} and {pair[1]} overlap")
         if len(self._walls):
-            near = distances_to(self._walls, places).min(axis=1) < self._radius - ROUNDING - drives
+            near = distances_to(self._walls, places).min(axis=1) < radii - ROUNDING - drives
             for a in np.flatnonzero(near).tolist():
                 self._report_overlap(now, (robots[a],), f"the body of robot {robots[a]} is in a wall")
 

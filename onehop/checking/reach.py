@@ -15,8 +15,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from onehop.checking.measured import Measured
 from onehop.checking.snapshot import Snapshot
 from onehop.contracts.arrays import BoolArray, FloatArray
+from onehop.contracts.link_trace import LinkTrace
 from onehop.contracts.messages import DeliveryStatus, Truth, Verdict
 from onehop.contracts.radio_section import RadioSection
 
@@ -32,6 +34,8 @@ PLACE_SIGMAS = 3.0
 FAST_FADE_DB = 12.0
 """What many paths add at most to the mean [dB]: more than that has a probability of 1e-7."""
 
+MODEL = "log-distance"
+"""The propagation that is worked out anew."""
 BOUND_DB = 1e4
 """SNR at any distance of a perfect link, which no jam drowns; and, negative, of none [dB]."""
 
@@ -61,10 +65,17 @@ def _given(value: float | None, default: float) -> float:
     return default if value is None else value
 
 
+def is_known(radio: RadioSection) -> bool:
+    """Whether propagation is worked out anew here: not that of a plugin, unless a trace replaces it."""
+    return radio.propagation == MODEL or (radio.links != "" and radio.links_use == "instead")
+
+
 class Budget:
     """Mean SNR under one radio section. shadowing_db: standard deviation of the fading of frames.
 
-    worst_place_db, best_db: what places take away at most, and what places and many paths add at most.
+    worst_place_db, best_db: what places take away at most, and what places and many paths add at most;
+    links that were measured instead are as they are at their places. unweakened_db: of a signal that
+    loses nothing on its way. is_known: whether mean SNR can be worked out at all.
     """
 
     def __init__(self, radio: RadioSection) -> None:
@@ -73,12 +84,16 @@ class Budget:
         self.exponent = _given(radio.path_loss_exponent, preset.exponent)
         self.threshold_db = _given(radio.receive_threshold_db, preset.threshold)
         self.shadowing_db = _given(radio.shadowing_db, preset.shadowing)
-        self.worst_place_db = PLACE_SIGMAS * _given(radio.spatial_shadowing_db, preset.spatial)
+        is_measured = radio.links != "" and radio.links_use == "instead"
+        spatial_db = 0.0 if is_measured else _given(radio.spatial_shadowing_db, preset.spatial)
+        self.worst_place_db = PLACE_SIGMAS * spatial_db
         self.best_db = self.worst_place_db + (0.0 if radio.fast_fading == "none" else FAST_FADE_DB)
+        self.is_known = is_known(radio)
         self.nearest = radio.reference_distance
         loss = 20.0 * math.log10(4.0 * math.pi * self.nearest * radio.frequency_hz / _LIGHT_SPEED)
         gain = 2.0 * radio.antenna_gain_dbi - radio.system_loss_db
-        self.reference_db = _given(radio.tx_power_dbm, preset.power) + gain - loss - self.noise_dbm
+        self.unweakened_db = _given(radio.tx_power_dbm, preset.power) + gain - self.noise_dbm
+        self.reference_db = self.unweakened_db - loss
         if radio.link != "modelled":
             self.exponent = 0.0
             self.reference_db = BOUND_DB if radio.link == "perfect" else -BOUND_DB
@@ -102,18 +117,26 @@ class Budget:
         return 10.0 * math.log10(total)
 
 
+def measured(trace: LinkTrace | None, radio: RadioSection, budget: Budget) -> Measured | None:
+    """What was measured of the links of a mission, if anything."""
+    return None if trace is None else Measured(trace, radio, budget.unweakened_db, budget.noise_dbm)
+
+
 class Links:
-    """Links of a team, tick by tick. robots: its ids.
+    """Links of a team, tick by tick. robots: its ids. trace: of links that were measured.
 
     since: (n, n) first tick from which two robots have been linked without a break, on the diagonal from
     which a robot has run as the same process and not slow; the tick after this one where they are not.
     apart: (n, n) pairs that cannot hear each other now.
     """
 
-    def __init__(self, robots: tuple[int, ...], radio: RadioSection, late_ns: int) -> None:
+    def __init__(
+        self, robots: tuple[int, ...], radio: RadioSection, late_ns: int, trace: LinkTrace | None = None
+    ) -> None:
         self.row = {robot: row for row, robot in enumerate(robots)}
         self.robots = robots
         self._budget = Budget(radio)
+        self._measured = measured(trace, radio, self._budget)
         self._late_ns = late_ns
         count = len(robots)
         self.since = np.zeros((count, count), dtype=np.int64)
@@ -135,8 +158,11 @@ class Links:
                     rise[row] = self._budget.jam_rise_db(truth, one.pose.x, one.pose.y)
         apart = place[:, None, :] - place[None, :, :]
         distances = np.hypot(apart[..., 0], apart[..., 1])
-        snr = self._budget.mean_snr_db(distances) - rise[None, :]
-        snr[np.isnan(snr)] = -np.inf
+        snr = self._budget.mean_snr_db(distances)
+        if self._measured is not None:
+            snr = self._measured.matrix_db(self.robots, truth.time_ns, snr)
+        snr[np.isnan(distances)] = -np.inf
+        snr -= rise[None, :]
         np.fill_diagonal(snr, np.where(np.isnan(place[:, 0]), -np.inf, np.inf))
         for cut in truth.cuts:
             side_a, side_b = self._rows(cut.side_a), self._rows(cut.side_b)
@@ -148,6 +174,8 @@ class Links:
         linked = weakest - budget.worst_place_db >= budget.threshold_db + MARGIN_DB
         strongest = np.maximum(snr, snr.T) + budget.best_db
         self.apart = strongest < budget.threshold_db - FARTHEST_FADE_DB
+        if not budget.is_known:
+            linked[:], self.apart[:] = False, False
         changed = incarnation != self._incarnation
         self._incarnation = incarnation
         if not now.follows:

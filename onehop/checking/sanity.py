@@ -6,7 +6,7 @@ told as flaws and left out, so that every check can rely on what it gets.
 
 import math
 
-from onehop.contracts.messages import Action, Observation, Truth
+from onehop.contracts.messages import Action, Inbox, Observation, Truth
 from onehop.contracts.ranges import out_of_range
 from onehop.wire.logged import TickMessage
 
@@ -20,6 +20,8 @@ def impossible(value: TickMessage, team: frozenset[int]) -> str | None:
         return _wrong_action(value, team)
     if isinstance(value, Observation):
         return None if _are_sound(value.pose.x, value.pose.y, value.pose.heading) else "is nowhere"
+    if isinstance(value, Inbox) and not all(one.robot in team for one in value.neighbours):
+        return "has neighbours who are not in the team"
     return _wrong_truth(value, team) if isinstance(value, Truth) else None
 
 

@@ -4,20 +4,29 @@ A log shows of a message's origin: that its robot was there, as the same process
 says of it is the same. What the bus itself refuses is not in the log (docs/limits.md).
 """
 
+import math
+
 from onehop.checking.effects import Effect, Effects
 from onehop.checking.findings import Findings
 from onehop.checking.invariants import OWN_VOICE, SILENCE
 from onehop.checking.snapshot import Snapshot
 from onehop.contracts import topics
+from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Presence, TransmitRequest, Truth
+from onehop.contracts.scenario import Scenario
+from onehop.contracts.sections import NOISE_SIGMAS, RobotSection
+
+ROUNDING = 1e-9
+"""What the sum of a place and its noise may be off by [m, rad]."""
 
 
 class Voices:
-    """Compares what a robot says with what the world says of it. robots: ids of the team."""
+    """Compares what a robot says with what the world says of it."""
 
-    def __init__(self, findings: Findings, robots: tuple[int, ...]) -> None:
+    def __init__(self, findings: Findings, scenario: Scenario) -> None:
         self._findings = findings
-        self._robots = robots
+        self._robots = scenario.team.robots
+        self._bodies = dict(zip(self._robots, scenario.bodies, strict=True))
         self._effects = Effects()
         self._before: dict[int, Effect] = {}
 
@@ -42,10 +51,9 @@ class Voices:
             )
             said = now.exhibit(topics.out(robot), f"incarnation {action.incarnation}")
             self._findings.report(OWN_VOICE, now.tick, (robot,), what, said)
-        if seen is not None and (seen.incarnation, seen.pose, seen.twist) != (
-            presence.incarnation,
-            presence.pose,
-            presence.twist,
+        if seen is not None and not (
+            (seen.incarnation, seen.twist) == (presence.incarnation, presence.twist)
+            and _can_be_told(seen.pose, presence.pose, self._bodies[robot])
         ):
             x, y = seen.pose.x, seen.pose.y
             what = f"the observation of robot {robot} is not of where and what it is"
@@ -112,3 +120,13 @@ def _same(done: Effect | None, request: TransmitRequest | None) -> bool:
 
 def _in_words(said: Effect | TransmitRequest) -> str:
     return f"{len(said.outbox)} messages, speed {said.speed:.3f}, {said.remaining_distance:.3f} m to go"
+
+
+def _can_be_told(told: Pose, true: Pose, body: RobotSection) -> bool:
+    """Whether a robot's sensors can make this of where it is: within the bounds of their noise."""
+    turned = math.remainder(told.heading - true.heading, math.tau)
+    place, heading = body.pose_noise, math.radians(body.heading_noise_deg)
+    return all(
+        abs(off) <= (NOISE_SIGMAS * noise + ROUNDING if noise else 0.0)
+        for off, noise in ((told.x - true.x, place), (told.y - true.y, place), (turned, heading))
+    )

@@ -40,13 +40,6 @@ class FastFading(StrEnum):
     RICIAN = "rician"
 
 
-class Planner(StrEnum):
-    ESCAPE = "escape"
-    MODIFIED = "modified"
-    ORIGINAL = "original"
-    PATH = "path"
-
-
 Settings = Annotated[
     list[str],
     Option("--set", metavar="KEY.PATH=VALUE", help="Change a key of the scenario (repeatable)."),
@@ -223,7 +216,9 @@ def plan(
     map_file: Annotated[Path, Argument(metavar="MAP", help=".toml, ROS .yaml or MovingAI .map.")],
     start: Annotated[str | None, Option(metavar="X,Y", help="Where it starts [m].")] = None,
     goal: Annotated[str | None, Option(metavar="X,Y", help="Where it goes [m].")] = None,
-    planner: Annotated[Planner | None, Option(help="How it finds its way.")] = None,
+    planner: Annotated[
+        str | None, Option(help="How it finds its way: a name as of planner.kind (onehop plugins).")
+    ] = None,
     seed: Annotated[
         int | None, Option(help="Seed of its samples.", callback=within(numbers.SEED))
     ] = None,
@@ -245,8 +240,7 @@ def plan(
     """
     from onehop.commands import plan as command
 
-    kind = None if planner is None else planner.value
-    leave(command.plan(map_file, start, goal, kind, seed, cell, settings, figure, path, as_json))
+    leave(command.plan(map_file, start, goal, planner, seed, cell, settings, figure, path, as_json))
 
 
 @app.command()

@@ -2,6 +2,7 @@
 
 import time
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ from onehop.commands.output import emit_json, stdout, table
 from onehop.commands.progress import ProgressLine
 from onehop.contracts.errors import InputError
 from onehop.mission.stops import Stopped
+from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import explained, held
@@ -44,7 +46,7 @@ def chaos(
     as_json: bool,
 ) -> int:
     """Run a campaign; returns the exit status."""
-    base = self_contained(scenario_file.load(scenario, settings), str(scenario))
+    base = _loaded(scenario, settings)
     taken = _corpus(corpus) if corpus is not None else {}
     if as_is:
         taken[scenario.name] = base
@@ -73,7 +75,16 @@ def _corpus(folder: Path) -> dict[str, Bundle]:
         paths = sorted(path for path in folder.iterdir() if path.suffix == ".toml")
     if not paths:
         raise InputError(f"--corpus {folder}", "has no scenario file", "files that end in .toml")
-    return {path.name: self_contained(scenario_file.load(path), str(path)) for path in paths}
+    return {path.name: _loaded(path) for path in paths}
+
+
+def _loaded(path: Path, settings: Sequence[str] = ()) -> Bundle:
+    """A scenario file whose programs are there, with its map beside it. Raises InputError."""
+    bundle = scenario_file.load(path, settings)
+    search_in(bundle.folder)
+    check(bundle.scenario, str(path))
+    require_programs(bundle.scenario, str(path))
+    return self_contained(bundle, str(path))
 
 
 class _Progress(ProgressLine):

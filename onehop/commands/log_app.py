@@ -11,6 +11,12 @@ from onehop.commands.app import AsJson, Settings, app, leave
 from onehop.commands.numbers import within
 
 
+class Format(StrEnum):
+    ROS2 = "ros2"
+    CSV = "csv"
+    PARQUET = "parquet"
+
+
 class Film(StrEnum):
     GIF = "gif"
     MP4 = "mp4"
@@ -154,3 +160,21 @@ def view(
     from onehop.commands import view as command
 
     leave(command.view(log, out, open_viewer, as_json))
+
+
+@app.command()
+def export(
+    log: Annotated[Path, Argument(help="A mission's log (.mcap).")],
+    to: Annotated[Format, Option(help="A rosbag2 folder, or the tables of the log as files.")],
+    out: Annotated[Path, Option("-o", "--out", help="The new folder.")],
+    as_json: AsJson = False,
+) -> None:
+    """Write a log for other tools: `ros2 bag`, rviz2, PlotJuggler, Foxglove; spreadsheets, data frames.
+
+    No ROS is needed for it (pip install 'onehop[ros2]').
+
+    Example: onehop export runs/demo/mission.mcap --to ros2 -o runs/demo/bag
+    """
+    from onehop.commands import export as command
+
+    leave(command.export(log, to.value, out, as_json))

@@ -14,6 +14,7 @@ from onehop.contracts.scenario import Scenario
 from onehop.drivers.trial import Trial, run_trial
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
+from onehop.programs.find import search_in
 from onehop.scenario import scenario_file
 from onehop.wire.output_folder import explained, require_writable
 
@@ -49,6 +50,7 @@ def plan(
         seed,
     )
     scenario = bundle.scenario
+    search_in(bundle.folder)
     walls = load_map(scenario.map, bundle.files)
     with scenario_file.in_file(map_file):
         run = run_trial(scenario, walls)

@@ -30,6 +30,9 @@ def replay(
             "is not in the team",
             f"one of {', '.join(map(str, scenario.team.robots))}",
         )
+    if robot in scenario.commands:
+        what = "is a process of somebody else's making, and has no core to run here"
+        raise InputError(f"--robot {robot}", what, "another robot")
     if settings and robot is None:
         raise InputError("--set", "asks what one robot would have done", "name it with --robot")
     period = scenario.clock.period_ms / 1000.0
@@ -66,6 +69,7 @@ def _as_json(report: Report) -> dict[str, Any]:
     return {
         "ticks": report.ticks,
         "robots": list(report.robots),
+        "foreign": list(report.foreign),
         "compared": report.compared,
         "divergences": report.divergences,
         "first": None
@@ -84,8 +88,9 @@ def _as_json(report: Report) -> dict[str, Any]:
 
 
 def _print(report: Report, period: float, what_if: bool) -> None:
-    names = f"robot{'s' if len(report.robots) > 1 else ''} {', '.join(map(str, report.robots))}"
-    print(f"{report.ticks} ticks, {names}: {report.compared} messages compared")
+    print(f"{report.ticks} ticks, {_names(report.robots)}: {report.compared} messages compared")
+    if report.foreign:
+        print(f"no core to run here for {_names(report.foreign)}: what they said is taken from the log")
     if report.first is not None:
         print(f"{report.divergences} divergences{' under the changed setting' if what_if else ''}")
         print(f"first: {_sentence(report.first, period)}")
@@ -95,6 +100,12 @@ def _print(report: Report, period: float, what_if: bool) -> None:
         print("0 divergences in what was compared; it is not all that was said in the mission")
     else:
         print("0 divergences: every message is the same, byte for byte")
+
+
+def _names(robots: tuple[int, ...]) -> str:
+    return (
+        f"robot{'s' if len(robots) > 1 else ''} {', '.join(map(str, robots))}" if robots else "no robot"
+    )
 
 
 def _sentence(first: Divergence, period: float) -> str:

@@ -6,7 +6,7 @@ from typing import Any
 
 from onehop.commands.output import emit_json, say, stdout, table
 from onehop.mission.progress import Display
-from onehop.programs.find import check, search_in
+from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import FIGURE, REMEDY, claimed, explained
@@ -40,6 +40,8 @@ def run(
     )
     search_in(bundle.folder)
     check(bundle.scenario, str(scenario))
+    if driver == "inline":
+        require_programs(bundle.scenario, str(scenario))
     folder = out or _fresh_folder(bundle)
     with claimed(folder) as claim:
         with Display(bundle.scenario) as display:
@@ -52,8 +54,7 @@ def run(
                 from onehop.mission import launcher
 
                 arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
-                robots = bundle.scenario.team.robots
-                plan = launcher.LaunchPlan(arguments, robots, folder, claim, record, bundle.folder)
+                plan = launcher.plan(bundle, arguments, folder, claim, record)
                 summary = launcher.run(plan, display.show, display.tell)
         if as_json:
             emit_json(summary)

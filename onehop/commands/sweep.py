@@ -13,6 +13,7 @@ from onehop.campaign.workers import workers
 from onehop.commands.output import emit_json, say, stdout, table
 from onehop.commands.progress import ProgressLine
 from onehop.mission.stops import Stopped
+from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.study.grid import axis, cells
 from onehop.study.in_words import interval
@@ -68,6 +69,9 @@ def sweep(
     """Run a sweep; returns the exit status."""
     first, seeds = how_many.first_seed, how_many.seeds
     base = scenario_file.load(scenario, settings)
+    search_in(base.folder)
+    check(base.scenario, str(scenario))
+    require_programs(base.scenario, str(scenario))
     varied = cells(scenario, settings, [axis(text) for text in over], first)
     wanted = Wanted([base], varied, range(first, first + seeds), keep, how_many.processes)
     folder = out or Path("runs") / f"sweep-{time.strftime('%Y%m%d-%H%M%S')}"

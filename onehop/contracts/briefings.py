@@ -4,6 +4,7 @@ from dataclasses import replace
 from typing import Any
 
 from onehop.contracts.arrays import FloatArray
+from onehop.contracts.link_trace import LinkTrace
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.sections import (
@@ -41,15 +42,45 @@ class Briefing(Wire, frozen=True):
     planner: PlannerSection
     radio: RadioSection
 
+    def plugin(self, group: str) -> Any:  # noqa: ARG002 - see PluggedBriefing
+        """What is plugged in under a group (plugin_names.py); None where a built-in one is named."""
+        return None
 
-class RadioBriefing(Wire, frozen=True):
-    """All that the radio proxy is told before it starts. walls: segments x0, y0, x1, y1 [m]."""
+
+class PluggedBriefing(Briefing, frozen=True):
+    """The same where the robot is made: with planner and gain policy that are not built in, by group."""
+
+    plugins: dict[str, Any]
+
+    def plugin(self, group: str) -> Any:
+        return self.plugins.get(group)
+
+
+class RadioBriefing(Wire, frozen=True, omit_defaults=True):
+    """All that the radio proxy is told before it starts.
+
+    walls: segments x0, y0, x1, y1 [m]. links: that were measured, if there are any.
+    """
 
     seed: int
     period_ns: int
     robots: tuple[int, ...]
     radio: RadioSection
     walls: tuple[tuple[float, float, float, float], ...]
+    links: LinkTrace | None = None
+
+    def plugin(self, group: str) -> Any:  # noqa: ARG002 - see PluggedRadioBriefing
+        """What is plugged in under a group (plugin_names.py); None where a built-in one is named."""
+        return None
+
+
+class PluggedRadioBriefing(RadioBriefing, frozen=True):
+    """The same where the radio is made: with routing and propagation that are not built in, by group."""
+
+    plugins: dict[str, Any] = {}  # noqa: RUF012 - a struct copies its defaults
+
+    def plugin(self, group: str) -> Any:
+        return self.plugins.get(group)
 
 
 class LogBriefing(Wire, frozen=True):
@@ -78,7 +109,7 @@ def robot_briefing(scenario: Scenario, robot: int, incarnation: int) -> Briefing
         parameters=parameters,
         goal=_goal_of(scenario),
         team=_team_of(scenario, robot, program),
-        body=scenario.robot,
+        body=scenario.body_of(robot),
         gains=scenario.gains,
         planner=scenario.planner,
         radio=scenario.radio,
@@ -105,7 +136,9 @@ def _team_of(scenario: Scenario, robot: int, program: str) -> TeamSection:
     return team if alike == team.robots else replace(team, ids=alike)
 
 
-def radio_briefing(scenario: Scenario, walls: FloatArray) -> RadioBriefing:
+def radio_briefing(
+    scenario: Scenario, walls: FloatArray, links: LinkTrace | None = None
+) -> RadioBriefing:
     """What the radio proxy may know; walls, (n, 4) [m], only if they weaken signals."""
     segments = walls.tolist() if scenario.radio.wall_loss_db > 0 else []
     return RadioBriefing(
@@ -114,4 +147,5 @@ def radio_briefing(scenario: Scenario, walls: FloatArray) -> RadioBriefing:
         robots=scenario.team.robots,
         radio=scenario.radio,
         walls=tuple((x0, y0, x1, y1) for x0, y0, x1, y1 in segments),
+        links=links,
     )

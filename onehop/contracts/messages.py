@@ -10,6 +10,7 @@ from typing import TypeAlias
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.neighbour import Neighbour
 from onehop.contracts.team import Status
 from onehop.contracts.units import NANOSECONDS
 from onehop.contracts.values import Value, Wire
@@ -62,12 +63,16 @@ class Reception(Value, frozen=True):
         return 8.0 * self.msdu_bytes * NANOSECONDS / duration_ns
 
 
-class Inbox(Wire, frozen=True):
-    """What the radio delivered to one robot in the tick that ends at time_ns (key rx/<i>)."""
+class Inbox(Wire, frozen=True, omit_defaults=True):
+    """What the radio delivered to one robot in the tick that ends at time_ns (key rx/<i>).
+
+    neighbours: whom its card heard, by id; where there are none the key is left out on the wire.
+    """
 
     tick: int
     time_ns: int
     receptions: tuple[Reception, ...]
+    neighbours: tuple[Neighbour, ...] = ()
 
 
 class Percept(Value, frozen=True):
@@ -79,17 +84,13 @@ class Percept(Value, frozen=True):
     twist: Twist
     scan: Ranges
     inbox: tuple[Reception, ...]
+    neighbours: tuple[Neighbour, ...] = ()
 
 
-def percept(observation: Observation, inbox: Inbox) -> Percept:
+def percept(seen: Observation, heard: Inbox) -> Percept:
     """What a robot knows at a tick, from the two messages that it got for it."""
     return Percept(
-        observation.tick,
-        observation.time_ns,
-        observation.pose,
-        observation.twist,
-        observation.scan,
-        inbox.receptions,
+        seen.tick, seen.time_ns, seen.pose, seen.twist, seen.scan, heard.receptions, heard.neighbours
     )
 
 

@@ -1,15 +1,14 @@
-"""Which program drives a robot, and with which parameters: for the whole team, and for single robots.
+"""Which program drives a robot, and with which parameters: what of a name and a table can be neither.
 
 Parameters are a free table here. The program's own dataclass says what may stand in it, and is asked
 when a mission is about to run (onehop/programs), so that a log can be read where its programs are not.
 """
 
 import math
-import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Annotated, Any
 
+from onehop.contracts.plugin_names import NAME, NAME_LETTERS
 from onehop.contracts.problems import Problem
 from onehop.contracts.ranges import Range
 
@@ -18,11 +17,6 @@ RobotId = Annotated[int, Range(1, 2**31 - 1)]
 BUILT_IN = "robot_agent.core.robot:Robot"
 """The team of this project."""
 
-_PROGRAM = re.compile(r"[A-Za-z_]\w*(\.\w+)*:[A-Za-z_]\w*|[A-Za-z_][\w.-]*", re.ASCII)
-"""package.module:Class, or the name under which an installed package offers one."""
-
-_PROGRAM_LETTERS = 200
-
 _DEEPEST = 8
 """Tables and lists within each other."""
 
@@ -30,27 +24,9 @@ _WHOLE = Range(-(2**63), 2**63 - 1)
 """Whole numbers that travel to a robot."""
 
 
-@dataclass(frozen=True, slots=True)
-class RobotEntry:
-    """What one robot has of its own.
-
-    program: empty for that of the team. parameters: with a program of its own all that it is given;
-    without one in place of those of the team that have the same names.
-    """
-
-    id: RobotId
-    program: str = ""
-    parameters: dict[str, Any] = field(default_factory=dict)
-
-    def problems(self) -> Iterator[Problem]:
-        if self.program:
-            yield from program_problems(self.program)
-        yield from parameter_problems(self.parameters)
-
-
 def program_problems(program: str) -> Iterator[Problem]:
     """What is wrong with the name of a program."""
-    if not _PROGRAM.fullmatch(program) or len(program) > _PROGRAM_LETTERS:
+    if not NAME.fullmatch(program) or len(program) > NAME_LETTERS:
         yield Problem("program", f"{program!r:.60} names no program", '"package.module:Class"')
 
 

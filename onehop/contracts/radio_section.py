@@ -4,9 +4,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
+from onehop.contracts.plugin_names import PluginName, name_problems
 from onehop.contracts.problems import Problem
 from onehop.contracts.ranges import Range
 
+RoutingName = Literal["direct", "mrsr", "mrdv"]
+PropagationName = Literal["log-distance"]
+"""What is built in; packages may add others."""
 _LEAST_SNR_DB = {"thesis": 32.0, "physical": 32.0, "indoor": 0.0}
 """Receive threshold of each preset: the thesis's (3.7), and that of measured cards (docs/links.md)."""
 
@@ -37,6 +41,10 @@ class RadioSection:
     capture_db: a frame stronger by this takes over a receiver in the preamble of another [dB]; None:
         a receiver that is locked stays so.
     frequency_hz, antenna_gain_dbi (each end), system_loss_db, reference_distance d0 [m].
+    propagation: what a signal loses between two places on the mean: "log-distance", by the keys above.
+    links: file of links that were measured, beside the scenario (docs/link-traces.md). links_use:
+        "instead" of path loss, walls and shadowing, so that a link which it does not have is none, or
+        "on top" of them, as a further loss.
     fading: a new draw for each "frame", or one for each "exchange". wall_loss_db: per wall crossed.
     rate_mbps: of data frames. rts_threshold_bytes: longer MSDUs are sent with RTS/CTS (2304: never).
     mac_header_bytes: 34 in the thesis's sums, 28 with three addresses.
@@ -50,6 +58,8 @@ class RadioSection:
     message_lifetime_s: after which a message is dropped where it waits, unless it has a lifetime of its
         own, as all messages of the team have; 0: never [s].
     routing: "direct" (one hop only), "mrsr" (on DSR) or "mrdv" (on AODV).
+    neighbours: whether cards tell their robots whom they hear: SNR and RSSI of each one's last frame,
+        whoever it was for.
     hello_s: period of MRDV's broadcast hellos (RFC 3561, 6.9), 0 for none [s].
     gamma_distance: remaining distance per unit of gamma in p_r = min(1, (1/v)^gamma) [m].
     """
@@ -79,6 +89,9 @@ class RadioSection:
     antenna_gain_dbi: Annotated[float, Range(-50.0, 50.0)] = 0.0
     system_loss_db: Annotated[float, Range(-100.0, 100.0)] = 0.0
     reference_distance: Annotated[float, Range(1e-3, 1e3)] = 1.0
+    propagation: PropagationName | PluginName = "log-distance"
+    links: str = ""
+    links_use: Literal["instead", "on top"] = "instead"
     fading: Literal["frame", "exchange"] = "frame"
     wall_loss_db: Annotated[float, Range(0.0, 1e3)] = 0.0
     rts_threshold_bytes: Annotated[int, Range(0, 2304)] = 0
@@ -86,7 +99,8 @@ class RadioSection:
     cts_timeout_us: Annotated[float, Range(222.0, 1e5)] = 222.0
     queue_frames: Annotated[int, Range(1, 100_000)] = 64
     message_lifetime_s: Annotated[float, Range(0.0, 3600.0)] = 0.0
-    routing: Literal["direct", "mrsr", "mrdv"] = "mrdv"
+    routing: RoutingName | PluginName = "mrdv"
+    neighbours: bool = False
     hello_s: Annotated[float, Range(0.0, 3600.0)] = 0.0
     gamma_distance: Annotated[float, Range(1e-3, 1e9)] = 10.0
 
@@ -97,6 +111,12 @@ class RadioSection:
         return _LEAST_SNR_DB[self.preset] if given is None else given
 
     def problems(self) -> Iterator[Problem]:
+        yield from name_problems("routing", self.routing)
+        yield from name_problems("propagation", self.propagation)
+        if self.link != "modelled":
+            for key in ("links", "neighbours"):
+                if getattr(self, key):
+                    yield Problem(key, f'set beside link = "{self.link}"', 'link = "modelled"')
         if self.rate_mbps not in (1.0, 2.0, 5.5, 11.0):
             yield Problem("rate_mbps", f"{self.rate_mbps} Mb/s", "1, 2, 5.5 or 11 (802.11b)")
         if self.retry_limit is not None:

@@ -8,18 +8,22 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, get_args
 
 from onehop.contracts.fault_section import FaultSection
+from onehop.contracts.plugin_names import GAIN_POLICIES, PLANNERS, PROPAGATION, ROUTING
 from onehop.contracts.problems import Problem
-from onehop.contracts.program_section import RobotEntry
-from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.program_section import BUILT_IN as TEAM_PROGRAM
+from onehop.contracts.radio_section import PropagationName, RadioSection, RoutingName
 from onehop.contracts.ranges import Range, out_of_range
+from onehop.contracts.robot_entry import RobotEntry
 from onehop.contracts.sections import (
     ClockSection,
+    GainPolicyName,
     GainsSection,
     GoalSection,
     MapSection,
+    PlannerName,
     PlannerSection,
     RobotSection,
     StartSection,
@@ -30,6 +34,20 @@ NAME = re.compile(r"\w[^/\\]*")
 NAME_BYTES = 200
 """What a scenario may be called: its log's folder bears the name, and the time of its run."""
 
+BUILT_IN: dict[str, tuple[str, ...]] = {
+    PLANNERS: get_args(PlannerName),
+    GAIN_POLICIES: get_args(GainPolicyName),
+    ROUTING: get_args(RoutingName),
+    PROPAGATION: get_args(PropagationName),
+}
+"""Names that cores know themselves, by group."""
+
+
+def plugins(names: dict[str, str]) -> dict[str, str]:
+    """Those of these names, by group, that are not built in."""
+    return {group: name for group, name in names.items() if name not in BUILT_IN[group]}
+
+
 PATH_END = 0.5
 """Distance of a given path's end from the goal, at most, in the goal's tolerances: a leader arrives at
 0.6 of them."""
@@ -39,6 +57,7 @@ PATH_END = 0.5
 class Scenario:
     """One mission. Sections as above; seed fixes everything random in the run.
 
+    programs: the folder of its robots' programs, seen from the file's own; empty for the file's own.
     robots: those that have something of their own. profile: "team", the defaults of the sections, or
     "thesis", which fills in the thesis's own where a file leaves them out (onehop/scenario/profile.py).
     Nothing but reading a file looks at it.
@@ -47,6 +66,7 @@ class Scenario:
     name: str
     goal: GoalSection
     map: MapSection
+    programs: str = ""
     start: StartSection = field(default_factory=StartSection)
     seed: Annotated[int, Range(0, 2**63 - 1)] = 1
     profile: Literal["team", "thesis"] = "team"
@@ -58,6 +78,18 @@ class Scenario:
     clock: ClockSection = field(default_factory=ClockSection)
     robots: tuple[RobotEntry, ...] = ()
     faults: tuple[FaultSection, ...] = ()
+
+    @property
+    def plugins(self) -> dict[str, str]:
+        """What it takes that is not built in: names by group (onehop/plugins.py)."""
+        return plugins(
+            {
+                PLANNERS: self.planner.kind,
+                GAIN_POLICIES: self.gains.policy,
+                ROUTING: self.radio.routing,
+                PROPAGATION: self.radio.propagation,
+            }
+        )
 
     def program_of(self, robot: int) -> tuple[str, dict[str, Any]]:
         """The program that drives a robot, and the parameters that it is given."""
@@ -79,6 +111,26 @@ class Scenario:
         others = len(self.team.robots) - 1
         return self.goal.tolerance + 2.0 * self.planner.inflation * math.sqrt(others)
 
+    @property
+    def commands(self) -> dict[int, tuple[str, ...]]:
+        """Of the robots that are processes of somebody else's making: what starts them."""
+        return {one.id: one.command for one in self.robots if one.command}
+
+    def has_own_programs(self) -> bool:
+        """Whether another program than the built-in team drives anybody, or anything is plugged in."""
+        programs = {self.program_of(robot)[0] for robot in self.team.robots}
+        return bool(self.commands or self.plugins) or programs != {TEAM_PROGRAM}
+
+    def body_of(self, robot: int) -> RobotSection:
+        """Body and sensors of a robot: section [robot], and what its own entry says."""
+        own = next((one for one in self.robots if one.id == robot), None)
+        return self.robot if own is None else own.body.of(self.robot)
+
+    @property
+    def bodies(self) -> tuple[RobotSection, ...]:
+        """Of every robot, in order of id."""
+        return tuple(self.body_of(robot) for robot in self.team.robots)
+
     def problems(self) -> Iterator[Problem]:
         """Everything that keeps this mission from being run: ranges, sections, then across them."""
         if not _is_name(self.name):
@@ -98,10 +150,11 @@ class Scenario:
                 f"{len(self.start.poses)} poses for {len(robots)} robots",
                 "one [x, y, heading_deg] for each robot, in order of id",
             )
-        if self.planner.inflation < self.robot.radius:
+        widest, whose = self._widest()
+        if self.planner.inflation < widest:
             yield Problem(
                 "planner.inflation",
-                f"{self.planner.inflation} m is less than robot.radius {self.robot.radius} m",
+                f"{self.planner.inflation} m is less than {whose} {widest} m",
                 "at least the radius",
             )
         if self.planner.kind == "path":
@@ -117,6 +170,11 @@ class Scenario:
                     f"robot {strangers[0]} is not in the team",
                     f"ids of the team: {', '.join(map(str, robots))}",
                 )
+
+    def _widest(self) -> tuple[float, str]:
+        """The largest radius of a robot [m], and its key."""
+        own = [(one.body.radius or 0.0, f"robots[{n}].body.radius") for n, one in enumerate(self.robots)]
+        return max([(self.robot.radius, "robot.radius"), *own], key=lambda one: one[0])
 
     def _robot_problems(self) -> Iterator[Problem]:
         team, seen = self.team.robots, set[int]()
@@ -137,11 +195,12 @@ class Scenario:
         path, start, goal = self.planner.path, self.start, self.goal
         starts = start.poses or ((start.x, start.y, 0.0),)
         away = min(math.dist(path[0], place[:2]) for place in starts)
-        if away > self.robot.laser_range:
+        sight = min(body.laser_range for body in self.bodies)
+        if away > sight:
             yield Problem(
                 "planner.path",
                 f"its first point is {away:.1f} m from the start",
-                f"at most robot.laser_range, {self.robot.laser_range} m",
+                f"at most the laser_range of every robot, {sight} m",
             )
         away, least = math.dist(path[-1], (goal.x, goal.y)), PATH_END * goal.tolerance
         if away > least:

@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
+from onehop.contracts.plugin_names import PluginName, name_problems
 from onehop.contracts.problems import Problem
 from onehop.contracts.program_section import (
     BUILT_IN,
@@ -86,24 +87,43 @@ class GoalSection:
     tolerance: Annotated[float, Range(1e-3, 1e3)] = 0.5
 
 
+Radius = Annotated[float, Range(0.01, 10.0)]
+Speed = Annotated[float, Range(0.01, 100.0)]
+TurnRate = Annotated[float, Range(0.01, 100.0)]
+LaserRange = Annotated[float, Range(0.1, 1e3)]
+LaserBeams = Annotated[int, Range(2, 10_000)]
+Field = Annotated[float, Range(1.0, 270.0)]
+Noise = Annotated[float, Range(0.0, 100.0)]
+"""Numbers of a body: [m], [m/s], [rad/s], [m], beams, [degrees], [m] or [degrees]."""
+
+NOISE_SIGMAS = 4.0
+"""Noise of sensors is held within so many standard deviations: one draw in 16,000 would lie beyond."""
+
+
 @dataclass(frozen=True, slots=True)
 class RobotSection:
-    """Body and sensors, the same for all robots (thesis 3.1).
+    """Body and sensors of all robots (thesis 3.1) but for what [[robots]] says of single ones.
 
     radius: of the disc that collides [m]. leader_speed: V_L [m/s]. max_speed: of followers [m/s].
     max_turn_rate [rad/s]. laser_*: 2-D range finder ahead (thesis 3.2, 3.4).
+    pose_noise, heading_noise_deg, laser_noise: standard deviations of what a robot is told, drawn anew
+    at every tick: of x and of y [m], of the heading [degrees], of each range that hits something [m].
     """
 
-    radius: Annotated[float, Range(0.01, 10.0)] = 0.2
-    leader_speed: Annotated[float, Range(0.01, 100.0)] = 1.0
-    max_speed: Annotated[float, Range(0.01, 100.0)] = 3.0
-    max_turn_rate: Annotated[float, Range(0.01, 100.0)] = 3.0
-    laser_range: Annotated[float, Range(0.1, 1e3)] = 10.0
-    laser_beams: Annotated[int, Range(2, 10_000)] = 181
-    laser_fov_deg: Annotated[float, Range(1.0, 270.0)] = 180.0
+    radius: Radius = 0.2
+    leader_speed: Speed = 1.0
+    max_speed: Speed = 3.0
+    max_turn_rate: TurnRate = 3.0
+    laser_range: LaserRange = 10.0
+    laser_beams: LaserBeams = 181
+    laser_fov_deg: Field = 180.0
+    pose_noise: Noise = 0.0
+    heading_noise_deg: Noise = 0.0
+    laser_noise: Noise = 0.0
 
 
 GainPolicyName = Literal["throughput", "constant", "smooth", "predictive", "lambda2"]
+"""Policies that are built in; packages may add others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,11 +144,12 @@ class GainsSection:
     k_beta: Annotated[float, Range(-1e3, 1e3)] = -1.5
     k_rho_min: Annotated[float, Range(1e-3, 1e3)] = 1.0
     k_rho_max: Annotated[float, Range(1e-3, 1e3)] = 3.0
-    policy: GainPolicyName = "throughput"
+    policy: GainPolicyName | PluginName = "throughput"
     threshold: Literal["thesis", "ideal", "slot"] = "thesis"
     reverse: bool = False
 
     def problems(self) -> Iterator[Problem]:
+        yield from name_problems("policy", self.policy)
         if not self.k_beta < 0:
             yield Problem("k_beta", f"{self.k_beta} is not negative", "k_beta < 0 (eq. 3.14)")
         if self.k_rho_max < self.k_rho_min:
@@ -205,6 +226,10 @@ class TeamSection:
             yield Problem("ids", f"{len(self.ids)} robots", f"at most {MOST_ROBOTS}")
 
 
+PlannerName = Literal["escape", "modified", "original", "path"]
+"""Ways of way-finding that are built in; packages may add others."""
+
+
 @dataclass(frozen=True, slots=True)
 class PlannerSection:
     """Way-finding of the leader (thesis 3.4). inflation: clearance kept from obstacles [m].
@@ -216,7 +241,7 @@ class PlannerSection:
     patience: distance that it may search without coming closer to the goal, in laser ranges.
     """
 
-    kind: Literal["escape", "modified", "original", "path"] = "escape"
+    kind: PlannerName | PluginName = "escape"
     path: tuple[Point, ...] = ()
     samples: Annotated[int, Range(1, 5000)] = 200
     inflation: Annotated[float, Range(0.01, 100.0)] = 0.5
@@ -226,6 +251,7 @@ class PlannerSection:
     patience: Annotated[float, Range(0.1, 1e6)] = 50.0
 
     def problems(self) -> Iterator[Problem]:
+        yield from name_problems("kind", self.kind)
         if self.kind == "path" and len(self.path) < 2:
             yield Problem(
                 "path", f"{len(self.path)} points to drive along", "at least two, [[x, y], [x, y]]"

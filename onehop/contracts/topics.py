@@ -5,12 +5,18 @@ speaks under `from/<name>`; the world hears all that is said there. Bus keys lie
 prefix, so that missions on one machine never hear each other.
 """
 
+from functools import lru_cache
+
 WORLD, RADIO, RECORDER, OPERATOR = "world", "radio", "recorder", "operator"
 
 INJECTOR = "injector"
 """Who orders faults by hand (`onehop fault`): it may say nothing else."""
 
+_remembered = lru_cache(maxsize=4096)
+"""For names that are asked for at every tick."""
 
+
+@_remembered
 def robot_name(robot: int | str) -> str:
     """Name of a robot's process, liveliness token and identity: robot-3."""
     return f"robot-{robot}"
@@ -119,16 +125,19 @@ RADIO_RECORD = "radio"
 """Log channel of the radio's verdicts; on the bus they travel in `carried`."""
 
 
+@_remembered
 def obs(robot: int | str) -> str:
     """Log channel of a robot's observation of tick k; on the bus it travels in its percept."""
     return f"obs/{robot}"
 
 
+@_remembered
 def rx(robot: int | str) -> str:
     """Log channel of a robot's inbox of tick k; on the bus it travels in `carried` and its percept."""
     return f"rx/{robot}"
 
 
+@_remembered
 def out(robot: int | str) -> str:
     """Log channel of a robot's action of tick k."""
     return f"out/{robot}"

@@ -8,9 +8,11 @@ from onehop.contracts.briefings import radio_briefing, robot_briefing
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import Action, Carriage, Outcome, percept, running
 from onehop.maps.map_file import load_map
-from onehop.programs.find import search_in
+from onehop.plugins import plugged_radio
+from onehop.programs.find import require_programs, search_in
 from onehop.programs.host import Host, ProgramError
 from onehop.scenario.bundle import Bundle
+from onehop.scenario.link_trace import link_trace
 from onehop.wire.codec import encode
 from onehop.wire.journal import Journal, WireMessage
 from onehop.wire.spoken import action_in, failed
@@ -29,13 +31,14 @@ def run(
     """Run a mission to its outcome.
 
     watch is called after every tick with its actions and with what the radio did in it, tell with each
-    robot whose program fails.
+    robot whose program fails. Raises ScenarioError for what cannot be run here.
     """
     scenario = bundle.scenario
+    require_programs(scenario, scenario.name)
     search_in(bundle.folder)
     walls = load_map(scenario.map, bundle.files)
     world = World(scenario, walls)
-    radio = make_radio(radio_briefing(scenario, walls.segments))
+    radio = make_radio(plugged_radio(radio_briefing(scenario, walls.segments, link_trace(bundle))))
     robots: dict[tuple[int, int], Host] = {}
     limits = ActionLimits(scenario.team.robots)
     outcome = None

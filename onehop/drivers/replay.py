@@ -16,12 +16,15 @@ from onehop.contracts import topics
 from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.briefings import radio_briefing, robot_briefing
 from onehop.contracts.errors import DecodeError, OnehopError
+from onehop.contracts.link_trace import LinkTrace
 from onehop.contracts.messages import Action, Inbox, Observation, Truth, percept
 from onehop.contracts.scenario import Scenario
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
+from onehop.plugins import plugged_radio
 from onehop.programs.find import check, search_in
 from onehop.programs.host import Host, ProgramError
+from onehop.scenario.link_trace import link_trace
 from onehop.wire.audit import Audit
 from onehop.wire.codec import UNPACK_REFUSALS, decode, encode
 from onehop.wire.difference import first_difference
@@ -50,10 +53,14 @@ class Divergence:
 
 @dataclass(slots=True)
 class Report:
-    """What a re-execution found. flaws: why the log is not all that was said (audit.py)."""
+    """What a re-execution found. flaws: why the log is not all that was said (audit.py).
+
+    foreign: robots that were processes of somebody else's making: what they said is taken as it is.
+    """
 
     ticks: int = 0
     robots: tuple[int, ...] = ()
+    foreign: tuple[int, ...] = ()
     compared: int = 0
     divergences: int = 0
     first: Divergence | None = None
@@ -87,20 +94,22 @@ def replay(
     """Re-execute robots (all by default) and, with parts, radio and world; compare every output.
 
     Outputs before first_tick are made (state has to grow from the start) but not compared.
-    scenario: run the robots with this one instead of the log's own (what-if). Raises LogError.
+    scenario: run the robots with this one instead of the log's own (what-if). A robot with a command
+    has no core to run, and is left out. Raises LogError.
     """
     original = log.bundle.scenario
     search_in(log.bundle.folder)
-    chosen = original.team.robots if robots is None else robots
+    wanted, foreign = original.team.robots if robots is None else robots, original.commands
+    chosen = tuple(robot for robot in wanted if robot not in foreign)
     check(scenario or original, str(log.path), chosen)
     players: dict[str, Player] = {
         topics.out(i): _RobotPlayer(scenario or original, i).play for i in chosen
     }
     if parts:
         walls = load_map(original.map, log.bundle.files)
-        players[topics.RADIO_RECORD] = _radio(original, walls)
+        players[topics.RADIO_RECORD] = _radio(original, walls, link_trace(log.bundle, str(log.path)))
         players[topics.TRUTH] = _WorldPlayer(original, walls).play
-    report = Report(robots=chosen)
+    report = Report(robots=chosen, foreign=tuple(sorted(foreign)))
     audit = Audit(log)
     comparison = _Comparison(report, players, everything=parts and robots is None, torn=log.torn)
     try:
@@ -129,6 +138,7 @@ class _Comparison:
         self._report = report
         self._players = players
         self._everything = everything
+        self._foreign = {topics.out(robot) for robot in report.foreign}
         self._torn = torn
         self._unjudged: list[Divergence] = []
 
@@ -154,7 +164,7 @@ class _Comparison:
     ) -> Iterator[Divergence]:
         for key in sorted({*recorded, *said}, key=canonical_rank):
             if key not in said:
-                if self._everything or key in self._players:
+                if key in self._players or (self._everything and key not in self._foreign):
                     yield _only(tick, key, "present", None)
             elif key not in recorded:
                 yield _only(tick, key, None, "present")
@@ -241,8 +251,8 @@ class _RobotPlayer:
         yield topics.out(i), said
 
 
-def _radio(scenario: Scenario, walls: WallMap) -> Player:
-    radio = make_radio(radio_briefing(scenario, walls.segments))
+def _radio(scenario: Scenario, walls: WallMap, links: LinkTrace | None) -> Player:
+    radio = make_radio(plugged_radio(radio_briefing(scenario, walls.segments, links)))
 
     def play(tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
         truth = _value(Truth, tick, topics.TRUTH)

@@ -19,8 +19,9 @@ from onehop.contracts.messages import Note
 from onehop.contracts.randomness import generator
 from onehop.contracts.scenario import Scenario
 from onehop.maps.walls import WallMap, segment_distances
-from robot_agent.core.planning import Guidance, PlannerStatus, make_pathfinder
-from robot_agent.core.planning.snapshot import ObservablePathfinder, PlanningSnapshot
+from onehop.plugins import plugged
+from robot_agent.core.planning import Guidance, Pathfinder, PlannerStatus, make_pathfinder
+from robot_agent.core.planning.snapshot import PlanningSnapshot
 from world_server.core.laser import Laser
 from world_server.core.motion import Motion
 from world_server.core.placement import start_poses
@@ -105,10 +106,11 @@ def run_trial(scenario: Scenario, walls: WallMap) -> Trial:
     scenario = _alone(scenario)
     robot = scenario.team.robots[0]
     poses = start_poses(scenario, walls)
-    laser = Laser(walls, scenario.robot)
-    motion = Motion(walls, scenario.robot, scenario.clock.period_ns)
+    body = scenario.body_of(robot)
+    laser = Laser(walls, body)
+    motion = Motion(walls, [body], scenario.clock.period_ns)
     rng = generator(scenario.seed, f"robot/{robot}/0")
-    finder = make_pathfinder(robot_briefing(scenario, robot, 0), _pose(poses), rng)
+    finder = make_pathfinder(plugged(robot_briefing(scenario, robot, 0)), _pose(poses), rng)
     record, contacts, path = _Record(finder), 0, [poses[0].copy()]
     for tick in range(int(scenario.clock.limit_s * 1000 / scenario.clock.period_ms)):
         guidance = record.step(tick, _pose(poses), laser.scans(poses, LOOKING)[0])
@@ -132,9 +134,9 @@ def run_trial(scenario: Scenario, walls: WallMap) -> Trial:
 
 
 class _Record:
-    """A pathfinder, and what is kept of its ticks."""
+    """A pathfinder, and what is kept of its ticks: its snapshots too, if it shows any."""
 
-    def __init__(self, finder: ObservablePathfinder) -> None:
+    def __init__(self, finder: Pathfinder) -> None:
         self.finder = finder
         self.status = PlannerStatus.DRIVING
         self.snapshots: list[PlanningSnapshot] = []
@@ -144,13 +146,13 @@ class _Record:
 
     def step(self, tick: int, pose: Pose, scan: Ranges) -> Guidance:
         """The pathfinder's step, timed."""
-        before = self.finder.snapshot
+        before = getattr(self.finder, "snapshot", None)
         began = time.perf_counter()
         guidance = self.finder.step(pose, scan)
         took = time.perf_counter() - began
         self.status = guidance.status
         self.notes += [(tick, note) for note in guidance.notes]
-        after = self.finder.snapshot
+        after = getattr(self.finder, "snapshot", None)
         if after is not None and after is not before:
             self.snapshots.append(after)
             self.plan_s.append(took)

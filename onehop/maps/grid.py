@@ -27,11 +27,16 @@ class GridGround:
 
     def __init__(self, filled: BoolArray, frame: GridFrame) -> None:
         self._filled = np.pad(filled, 1, constant_values=True)
-        self._frame = frame
+        self.frame = frame
+
+    @property
+    def filled(self) -> BoolArray:
+        """The cells, (rows, columns)."""
+        return self._filled[1:-1, 1:-1]
 
     def solid(self, points: FloatArray) -> BoolArray:
         """Which points, (n, 2) [m], are in a filled cell or outside the grid, (n,)."""
-        frame = self._frame
+        frame = self.frame
         c, s = elementary.cos(frame.yaw), elementary.sin(frame.yaw)
         x, y = points[:, 0] - frame.x, points[:, 1] - frame.y
         column = np.floor((c * x + s * y) / frame.cell).astype(np.int64) + 1

@@ -18,6 +18,7 @@ from onehop.mission.processes import ProcessGroup, free_endpoint
 from onehop.mission.rendezvous import Rendezvous, published
 from onehop.mission.stops import StopRequest
 from onehop.node.bus import LEASE_MS, Bus, open_client
+from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import LOG
 from onehop.wire.summary import read_summary, summarize, write_summary
 
@@ -42,7 +43,8 @@ class LaunchPlan:
     """What to run. world_arguments: scenario and options, as `python -m world_server` takes them.
 
     out: the folder of its output, held by the descriptor `claim` (output_folder.claimed).
-    programs: where robots look for programs that are not installed.
+    programs: where robots look for programs that are not installed, and where commands are started.
+    commands: of robots that are processes of somebody else's making.
     """
 
     world_arguments: tuple[str, ...]
@@ -50,7 +52,17 @@ class LaunchPlan:
     out: Path
     claim: int
     record: bool
-    programs: str = ""
+    programs: str
+    commands: dict[int, tuple[str, ...]]
+
+
+def plan(
+    bundle: Bundle, world_arguments: tuple[str, ...], out: Path, claim: int, record: bool
+) -> LaunchPlan:
+    """How to run a mission; see LaunchPlan."""
+    scenario = bundle.scenario
+    robots, commands = scenario.team.robots, scenario.commands
+    return LaunchPlan(world_arguments, robots, out, claim, record, bundle.folder, commands)
 
 
 def run(
@@ -97,7 +109,8 @@ class _Launch:
             endpoint = free_endpoint()
             words = self._plan.out / "stderr"
             plan = self._plan
-            with ProcessGroup(endpoint, mission, plan.robots, words, plan.programs) as group:
+            programs = plan.programs, plan.commands
+            with ProcessGroup(endpoint, mission, plan.robots, words, *programs) as group:
                 ending = self._run_once(group, mission, endpoint)
             if ending is not None:
                 return self._summary_of(ending, group)

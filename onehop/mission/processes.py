@@ -8,7 +8,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -73,17 +73,26 @@ class ProcessGroup:
 
     Each gets its own password through its environment, a lifeline that ends it when this process dies,
     and a file in the folder `words` for what it says. If nobody said anything the folder goes.
-    programs: where robots look for programs that are not installed. Raises InputError when this system
-    does not let so many processes work together.
+    programs: where robots and radio look for what is not installed. commands: of robots that are not
+    ours; they are started in the folder `programs`, with what ours are told. Raises InputError when this
+    system does not let so many processes work together.
     """
 
     def __init__(
-        self, endpoint: str, mission: str, robots: Sequence[int], words: Path, programs: str = ""
+        self,
+        endpoint: str,
+        mission: str,
+        robots: Sequence[int],
+        words: Path,
+        programs: str,
+        commands: Mapping[int, Sequence[str]],
     ) -> None:
         self._endpoint = endpoint
         self._mission = mission
         self._words = words
         self._programs = programs
+        self._search = ["--programs", programs] if programs else []
+        self._commands = commands
         others = (topics.RADIO, topics.RECORDER, topics.OPERATOR, topics.INJECTOR)
         names = [*others, *map(topics.robot_name, robots)]
         require_descriptors(len(names))
@@ -117,7 +126,7 @@ class ProcessGroup:
         self._start(topics.WORLD, "world_server", [*arguments, "--listen", self._endpoint])
 
     def start_radio(self) -> None:
-        self._start(topics.RADIO, "radio_proxy", ["--connect", self._endpoint])
+        self._start(topics.RADIO, "radio_proxy", ["--connect", self._endpoint, *self._search])
 
     def start_recorder(self, out: Path, with_file: bool, claim: int) -> None:
         """claim: descriptor that holds the folder `out`, from now on for the recorder too."""
@@ -131,26 +140,48 @@ class ProcessGroup:
         self._start(topics.RECORDER, "onehop.recorder", arguments, claim)
 
     def start_robot(self, robot: int) -> None:
-        arguments = ["--id", str(robot), "--connect", self._endpoint]
-        arguments += ["--programs", self._programs] if self._programs else []
-        self._start(topics.robot_name(robot), "robot_agent", arguments)
+        """Raises InputError when its command names nothing that can be started."""
+        name, arguments = topics.robot_name(robot), ["--id", str(robot), "--connect", self._endpoint]
+        command = self._commands.get(robot)
+        if command is None:
+            self._start(name, "robot_agent", [*arguments, *self._search])
+            return
+        try:
+            self._start_command(name, command, arguments, folder=self._programs)
+        except OSError as error:
+            remedy = "a program in PATH, or ./NAME in the scenario's folder"
+            what = f"{command[0]!r:.200} cannot be started ({error.strerror})"
+            raise InputError(f"robots: command of robot {robot}", what, remedy) from None
 
     def _start(self, name: str, module: str, arguments: Sequence[str], *inherited: int) -> None:
-        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+        self._start_command(name, [sys.executable, "-m", module], arguments, *inherited)
+
+    def _start_command(
+        self,
+        name: str,
+        command: Sequence[str],
+        arguments: Sequence[str],
+        *inherited: int,
+        folder: str | None = None,
+    ) -> None:
+        own = os.path.dirname(sys.executable)
+        path = os.pathsep.join((own, os.environ.get("PATH", os.defpath)))
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PATH": path}
         if name in self._passwords:
             environment[PASSWORD_VARIABLE] = self._passwords[name]
         else:
             words = (f"{user}:{password}" for user, password in self._passwords.items())
             environment[CREDENTIALS_VARIABLE] = " ".join(words)
-        command = [sys.executable, "-m", module, "--mission", self._mission]
+        shared = ["--mission", self._mission, "--lifeline", str(self._lifeline)]
         with self._file(name).open("ab") as stderr:
             process = subprocess.Popen(
-                [*command, "--lifeline", str(self._lifeline), *arguments],
+                [*command, *shared, *arguments],
                 stdin=subprocess.DEVNULL,
                 stdout=stderr,
                 stderr=stderr,
                 pass_fds=(self._lifeline, *inherited),
                 env=environment,
+                cwd=folder,
                 start_new_session=True,
             )
         before = self._children.get(name)

@@ -196,9 +196,12 @@ class Bus:
         while True:
             sample = channel.try_recv() or channel.recv()
             what = str(sample.key_expr)[self._prefix :]
-            data = self._parts.joined(what, sample.payload.to_bytes())
-            if data is not None:
+            data = sample.payload.to_bytes()
+            if not (self._parts.waiting or what.endswith(topics.PART)):
                 return what, data
+            whole = self._parts.joined(what, data)
+            if whole is not None:
+                return what, whole
 
     def receive_by(self, deadline: float) -> tuple[str, bytes] | None:
         """The next message; None when there is none by the deadline (time.monotonic() [s])."""

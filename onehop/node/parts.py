@@ -26,11 +26,15 @@ def last_part(data: bytes) -> bytes:
 
 
 class Parts:
-    """Puts together what one process hears. most_bytes: what it keeps of a sender's parts at most."""
+    """Puts together what one process hears. most_bytes: what it keeps of a sender's parts at most.
+
+    waiting: by sender, what has come of a message. While there is none, `joined` gives back whatever is
+    no part itself.
+    """
 
     def __init__(self, most_bytes: int) -> None:
         self._most_bytes = most_bytes
-        self._waiting: dict[str, bytearray] = {}
+        self.waiting: dict[str, bytearray] = {}
 
     def joined(self, what: str, data: bytes) -> bytes | None:
         """A message with the parts that came before it; None if it is a part itself.
@@ -40,9 +44,9 @@ class Parts:
         """
         sender, _, word = what.rpartition("/")
         if word == topics.PART:
-            waiting = self._waiting.setdefault(sender, bytearray())
+            waiting = self.waiting.setdefault(sender, bytearray())
             waiting += data
-            return None if len(waiting) <= self._most_bytes else bytes(self._waiting.pop(sender))
-        if sender in self._waiting:
-            return bytes(self._waiting.pop(sender) + data)
+            return None if len(waiting) <= self._most_bytes else bytes(self.waiting.pop(sender))
+        if sender in self.waiting:
+            return bytes(self.waiting.pop(sender) + data)
         return data

@@ -1,20 +1,18 @@
 """A program by the name that a scenario gives it, and its parameters checked by its own dataclass."""
 
-import importlib
 import os
 import sys
-import traceback
 from collections.abc import Iterable
 from dataclasses import is_dataclass
-from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
 from onehop.contracts.errors import InputError, ScenarioError
-from onehop.contracts.printable import printable
 from onehop.contracts.problems import Problem
 from onehop.contracts.program_section import BUILT_IN
 from onehop.contracts.ranges import out_of_range
 from onehop.contracts.scenario import Scenario
+from onehop.plugins import PROGRAMS, imported, value_of
+from onehop.plugins import check as check_plugins
 from onehop.robot import Program
 from onehop.scenario.structure import structured
 
@@ -26,35 +24,13 @@ def search_in(folder: str) -> None:
             sys.path.insert(0, place)
 
 
-GROUP = "onehop.programs"
-"""Entry points by which an installed package offers programs under names of their own."""
-
-
-def installed() -> list[EntryPoint]:
-    """Programs that packages offer, by name."""
-    return sorted(entry_points(group=GROUP), key=lambda one: (one.name, one.value))
-
-
 def find(name: str, where: str = "program") -> type[Program]:
     """The class of a program. Raises InputError. where: what to call its key.
 
     name: "package.module:Class", or the name under which an installed package offers it.
     """
     remedy = '"package.module:Class", installed or in the folder of the scenario'
-    value = name
-    if ":" not in name:
-        value = next((one.value for one in installed() if one.name == name), "")
-        if not value:
-            names = ", ".join(dict.fromkeys(one.name for one in installed())) or "none"
-            raise InputError(where, f"{name!r} is offered by no package", f"{remedy}, or of {names}")
-    module_name, _, class_name = value.partition(":")
-    try:
-        module = importlib.import_module(module_name)
-    except ModuleNotFoundError as error:
-        raise InputError(where, f"{name!r}: {error}", remedy) from None
-    except (Exception, SystemExit) as error:
-        raise InputError(where, f"{name!r} cannot be imported: {_last_line(error)}", "mend it") from None
-    found = getattr(module, class_name, None)
+    found = imported(name, value_of(PROGRAMS, name, where, remedy), where, remedy)
     if not (isinstance(found, type) and issubclass(found, Program)):
         raise InputError(where, f"{name!r} is no onehop.robot.Program", remedy)
     return found
@@ -78,12 +54,16 @@ def parameters_of(program: type[Program], table: dict[str, Any], origin: str, ke
 
 
 def check(scenario: Scenario, origin: str, robots: Iterable[int] | None = None) -> None:
-    """See that the programs of robots, by default all, are there and take their parameters.
+    """See that all that a mission names is there.
 
-    origin: what to call the scenario. Raises InputError.
+    The programs of robots, by default all, with parameters that they take, and what is plugged in. Those
+    of robots with a command are its own business. origin: what to call the scenario. Raises InputError.
     """
+    check_plugins(scenario, origin)
     seen: list[tuple[str, dict[str, Any]]] = [(BUILT_IN, {})]  # its robots load it, and nobody else
     for robot in scenario.team.robots if robots is None else robots:
+        if robot in scenario.commands:
+            continue
         wanted = name, table = scenario.program_of(robot)
         if wanted in seen:
             continue
@@ -96,10 +76,10 @@ def check(scenario: Scenario, origin: str, robots: Iterable[int] | None = None) 
         parameters_of(program, table, origin, key)
 
 
-def _last_line(error: BaseException) -> str:
-    """What went wrong in a module, and in which line."""
-    frames = traceback.extract_tb(error.__traceback__)
-    place = f" ({os.path.basename(frames[-1].filename)}:{frames[-1].lineno})" if frames else ""
-    return (
-        printable("".join(traceback.format_exception_only(error)).strip().splitlines()[-1], 200) + place
-    )
+def require_programs(scenario: Scenario, origin: str) -> None:
+    """See that every robot can be run in this process. origin: see `check`. Raises ScenarioError."""
+    for number, one in enumerate(scenario.robots):
+        if one.command:
+            what = f"robot {one.id} is a process of its own, and has no program to run in this one"
+            remedy = "onehop run with --driver processes, or --set robots=[] for the team's program"
+            raise ScenarioError(f"{origin}: robots[{number}].command", what, remedy)

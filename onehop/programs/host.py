@@ -18,6 +18,7 @@ from onehop.contracts.errors import InputError
 from onehop.contracts.geometry import Twist
 from onehop.contracts.messages import Percept
 from onehop.contracts.printable import printable
+from onehop.plugins import plugged
 from onehop.programs.find import find, parameters_of
 from onehop.robot import Action
 from onehop.wire.codec import encode
@@ -56,7 +57,7 @@ class Host:
         try:
             kind = find(briefing.program)
             own = parameters_of(kind, briefing.parameters, briefing.program, "parameters")
-            self._program = kind(msgspec.structs.replace(briefing, parameters=own))
+            self._program = kind(msgspec.structs.replace(plugged(briefing), parameters=own))
         except InputError as error:
             self._failure = ProgramError(str(error), str(error))
         except (Exception, SystemExit) as error:

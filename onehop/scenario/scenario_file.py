@@ -10,13 +10,16 @@ import stat
 import tomllib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from onehop.contracts.errors import ScenarioError
 from onehop.maps.map_file import LARGEST_FILE, map_files
+from onehop.plugins import check_names
 from onehop.scenario.bundle import Bundle
 from onehop.scenario.changes import Change, apply_change
+from onehop.scenario.link_trace import link_trace
 from onehop.scenario.structure import structure
 
 
@@ -52,8 +55,10 @@ def load(
         apply_change(table, setting)
     table.setdefault("name", path.stem)
     scenario = structure(table, str(path))
+    check_names(scenario, str(path))
     files = _read_map_files(scenario.map.file, directory, str(path))
-    return Bundle(scenario, files, str(path.parent.absolute()))
+    bundle = Bundle(scenario, files, str((path.parent / scenario.programs).absolute()))
+    return _with_links(bundle, path.parent, str(path))
 
 
 @contextmanager
@@ -106,7 +111,9 @@ def load_map_mission(
     for setting in settings:
         apply_change(table, setting)
     scenario = structure(table, str(map_file))
-    return Bundle(scenario, _read_map_files(scenario.map.file, map_file.parent, str(map_file)))
+    check_names(scenario, str(map_file))
+    files = _read_map_files(scenario.map.file, map_file.parent, str(map_file))
+    return _with_links(Bundle(scenario, files), map_file.parent, str(map_file))
 
 
 def _read_toml(path: Path) -> dict[str, Any]:
@@ -126,20 +133,32 @@ def _read_toml(path: Path) -> dict[str, Any]:
         raise ScenarioError(str(path), "nested too deeply", "see scenarios/map1.toml") from None
 
 
+def _with_links(bundle: Bundle, directory: Path, origin: str) -> Bundle:
+    """The mission with its trace of measured links, which has been checked."""
+    name = bundle.scenario.radio.links
+    if not name:
+        return bundle
+    kinds = "a CSV file of measured links (docs/link-traces.md)"
+    content = _read_file(directory / name, f"{origin}: radio.links", kinds)
+    whole = replace(bundle, files={**bundle.files, name: content})
+    link_trace(whole, origin)
+    return whole
+
+
 def _read_map_files(name: str, directory: Path, origin: str) -> dict[str, bytes]:
     """The map's file and those that it names, by their names; relative ones lie beside it."""
     if not name:
         return {}
     location = directory / name
     kinds = "a ROS map .yaml, a MovingAI .map, or polygons in the scenario"
-    files = {name: _read_map_file(location, f"{origin}: map.file", kinds)}
+    files = {name: _read_file(location, f"{origin}: map.file", kinds)}
     for further in map_files(name, files[name]):
         remedy = f"an image that exists, named absolutely or from the folder of {location.name}"
-        files[further] = _read_map_file(location.parent / further, f"{location}: image", remedy)
+        files[further] = _read_file(location.parent / further, f"{location}: image", remedy)
     return files
 
 
-def _read_map_file(location: Path, where: str, remedy: str) -> bytes:
+def _read_file(location: Path, where: str, remedy: str) -> bytes:
     shown = str(location) if str(location).isprintable() else ascii(str(location))
     try:
         if not stat.S_ISREG(location.stat().st_mode):
@@ -150,5 +169,5 @@ def _read_map_file(location: Path, where: str, remedy: str) -> bytes:
         reason = (isinstance(error, OSError) and error.strerror) or "cannot be read"
         raise ScenarioError(where, f"{shown}: {reason}", remedy) from None
     if len(content) > LARGEST_FILE:
-        raise ScenarioError(where, f"{shown}: larger than {LARGEST_FILE} bytes", "a smaller map")
+        raise ScenarioError(where, f"{shown}: larger than {LARGEST_FILE} bytes", "a smaller file")
     return content

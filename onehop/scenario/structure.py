@@ -46,11 +46,21 @@ def _choice(value: Any, kind: Any) -> Any:
     return value
 
 
+def _is_name(kind: Any) -> bool:
+    """Whether a kind is one of some words, or a text that names something else."""
+    return str in get_args(kind) and any(map(_is_literal, get_args(kind)))
+
+
+def _name(value: Any, _: Any) -> Any:
+    return _scalar(value, str)
+
+
 def _make_converter() -> cattrs.Converter:
     converter = cattrs.Converter(forbid_extra_keys=True)
     for kind in (bool, int, float, str):
         converter.register_structure_hook(kind, _scalar)
     converter.register_structure_hook_func(_is_literal, _choice)
+    converter.register_structure_hook_func(_is_name, _name)
     return converter
 
 

@@ -41,7 +41,7 @@ class Cell:
 
     def with_seed(self, seed: int) -> Bundle:
         """The mission of one seed."""
-        return Bundle(replace(self.bundle.scenario, seed=seed), self.bundle.files)
+        return replace(self.bundle, scenario=replace(self.bundle.scenario, seed=seed))
 
 
 def axis(text: str) -> Axis:

@@ -17,7 +17,6 @@ from mcap.writer import CompressionType, Writer
 
 from onehop import __version__
 from onehop.contracts import topics
-from onehop.contracts.program_section import BUILT_IN
 from onehop.contracts.values import WIRE_VERSION
 from onehop.scenario.bundle import Bundle
 from onehop.wire.journal import WireMessage
@@ -31,12 +30,7 @@ OUTCOME = "outcome"
 """Names in the file; the last is that of the metadata that end a log."""
 
 PROGRAMS = "programs"
-"""Where the robots' programs lay, if they are not ours: a re-execution looks for them there again."""
-
-
-def _has_own_programs(bundle: Bundle) -> bool:
-    scenario = bundle.scenario
-    return any(scenario.program_of(robot)[0] != BUILT_IN for robot in scenario.team.robots)
+"""Where programs and plugins lay, if they are not ours: a re-execution looks for them there again."""
 
 
 class LogWriter:
@@ -57,7 +51,7 @@ class LogWriter:
                 "scenario": bundle.scenario.name,
                 "seed": str(bundle.scenario.seed),
                 "driver": driver,
-                **({PROGRAMS: bundle.folder} if _has_own_programs(bundle) else {}),
+                **({PROGRAMS: bundle.folder} if bundle.scenario.has_own_programs() else {}),
             },
         )
         self._attach(SCENARIO_ATTACHMENT, bundle.scenario_json().encode(), "application/json")

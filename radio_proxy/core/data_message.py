@@ -8,7 +8,7 @@ from msgspec.structs import replace
 from onehop.contracts.messages import DeliveryStatus, Verdict
 from radio_proxy.core.addresses import RobotId
 from radio_proxy.core.event_queue import NEVER
-from radio_proxy.core.propagation import SILENT_DB
+from radio_proxy.core.path_loss import SILENT_DB
 
 MAX_DISCOVERIES = 2
 """Route discoveries that the source makes for one message: at first, and once more when a hop failed."""

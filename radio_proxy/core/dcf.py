@@ -294,6 +294,7 @@ class Dcf:
         timing, receiver, frame = self.timing, exchange.receiver, exchange.frame
         self._end(exchange.emission, now)
         received = self._is_received(exchange, receiver)
+        self._listener.on_data_ended(exchange.sender.index, frame, exchange.emission, now)
         if not exchange.undisturbed or not received:
             self._reserve(exchange, now, 1, timing.ack)
         if not received:

@@ -17,6 +17,7 @@ from onehop.contracts.messages import (
 from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.corruption import Corrupter
 from radio_proxy.core.data_message import DataMessage, DataPacket
+from radio_proxy.core.eavesdropper import Eavesdropper
 
 BUFFER_BYTES = 212_992
 """What waits at most for a robot that is stopped [B]: Linux's net.core.rmem_default."""
@@ -28,8 +29,9 @@ class Deliveries:
     stopped: those of them that read nothing: what they receive waits until they go on.
     """
 
-    def __init__(self, corrupter: Corrupter) -> None:
+    def __init__(self, corrupter: Corrupter, eavesdropper: Eavesdropper | None = None) -> None:
         self._corrupter = corrupter
+        self._eavesdropper = eavesdropper
         self.present: tuple[RobotId, ...] = ()
         self.stopped: tuple[int, ...] = ()
         self._verdicts: list[Verdict] = []
@@ -49,6 +51,11 @@ class Deliveries:
             for robot in sorted(received):
                 if robot not in self.stopped:
                     inboxes[robot] = Inbox(tick, time_ns, tuple(received[robot]))
+        if self._eavesdropper is not None:
+            inboxes = {
+                robot: Inbox(tick, time_ns, inbox.receptions, self._eavesdropper.heard(robot))
+                for robot, inbox in inboxes.items()
+            }
         verdicts = tuple(self._verdicts)
         self._verdicts = []
         if control_bytes != self._control_bytes:
@@ -58,6 +65,8 @@ class Deliveries:
     def forget(self, robot: RobotId) -> None:
         """A robot has left, or is another process: what waits for it is lost."""
         self._receptions = [one for one in self._receptions if one[3] != robot]
+        if self._eavesdropper is not None:
+            self._eavesdropper.forget(robot)
 
     def deliver(self, data: DataPacket, now: int) -> None:
         """A copy reached its destination; a second one is dropped."""

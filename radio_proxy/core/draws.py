@@ -2,11 +2,9 @@
 
 import numpy as np
 
-_BLOCK = 512
+from onehop.contracts.randomness import normals
 
-_GRAIN = 1.0 / (1 << 20)
-"""Normal numbers are multiples of this: beyond 3.65 the generator takes a logarithm from the C library,
-whose last place depends on the processor."""
+_BLOCK = 512
 
 
 class Draws:
@@ -30,8 +28,7 @@ class Draws:
         try:
             return self._normal.pop()
         except IndexError:
-            drawn = self._stream.standard_normal(_BLOCK)
-            self._normal = (np.rint(drawn / _GRAIN) * _GRAIN).tolist()
+            self._normal = normals(self._stream, _BLOCK).tolist()
             return self._normal.pop()
 
     def slots(self, window: int) -> int:

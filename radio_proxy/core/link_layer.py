@@ -19,12 +19,14 @@ from radio_proxy.core.data_message import DataPacket
 from radio_proxy.core.dcf import Dcf
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.eavesdropper import Eavesdropper
 from radio_proxy.core.emission import Emission
 from radio_proxy.core.error_rates import bit_error_rate
 from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.link_rules import link_rules
 from radio_proxy.core.medium import Medium
-from radio_proxy.core.propagation import OWN_DB, SILENT_DB, Propagation
+from radio_proxy.core.path_loss import OWN_DB, SILENT_DB
+from radio_proxy.core.propagation import Propagation
 from radio_proxy.core.routing.interface import Router
 
 
@@ -42,6 +44,7 @@ class LinkLayer:
         propagation: Propagation,
         draws: Draws,
         deliveries: Deliveries,
+        eavesdropper: Eavesdropper | None = None,
     ) -> None:
         self.force_backoff = False
         self.control_bytes: dict[str, int] = {}
@@ -51,6 +54,7 @@ class LinkLayer:
         self._propagation = propagation
         self._threshold_db = propagation.budget.receive_threshold_db
         self._deliveries = deliveries
+        self._eavesdropper = eavesdropper
         self._timing = dsss(section)
         rules = link_rules(section)
         self._medium = Medium(propagation, draws, rules)
@@ -101,6 +105,10 @@ class LinkLayer:
     def on_expired(self, sender: StationIndex, frame: Frame, now: int) -> None:  # noqa: ARG002
         assert isinstance(frame.packet, DataPacket), "routing packets do not expire"
         self._deliveries.drop(frame.packet.tried(0), DeliveryStatus.EXPIRED)
+
+    def on_data_ended(self, sender: StationIndex, frame: Frame, emission: Emission, now: int) -> None:  # noqa: ARG002
+        if self._eavesdropper is not None:
+            self._eavesdropper.on_frame(emission, (frame.cause, frame.sinr_db), self._routers, now)
 
     def on_received(self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int) -> None:
         packet = frame.packet
@@ -181,6 +189,8 @@ class LinkLayer:
                 self._deliveries.record(copy, robot, status, -1 if cause else now)
             elif cause is None:
                 router.on_packet(packet, source, now)
+        if self._eavesdropper is not None:
+            self._eavesdropper.on_frame(emission, None, self._routers, now)
 
     def _note_link(self, data: DataPacket, frame: Frame) -> None:
         data.message.sinr_db = frame.sinr_db

@@ -15,8 +15,8 @@ from radio_proxy.core.closed_forms import SaturatedLink, bianchi_normalized, fra
 from radio_proxy.core.error_rates import bit_error_rate, thesis_ber
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.link_rules import link_rules
+from radio_proxy.core.path_loss import OWN_DB, SILENT_DB
 from radio_proxy.core.place_gains import place_gains_db
-from radio_proxy.core.propagation import OWN_DB, SILENT_DB
 from radio_proxy.core.saturation import Saturation, pair, ring
 
 

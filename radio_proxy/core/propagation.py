@@ -1,4 +1,4 @@
-"""At which SNR each robot receives each other: path loss, walls, cuts and jams (thesis 3.7.1).
+"""At which SNR each robot receives each other: a model of propagation, cuts and jams (thesis 3.7.1).
 
 The mean SNR of every pair, with the shadowing between their places, is computed sender by sender when
 one first transmits in a tick; fast fading comes on top for every emission.
@@ -12,38 +12,17 @@ from radio_proxy.core.addresses import RobotId, StationIndex
 from radio_proxy.core.airtime import delay_ns
 from radio_proxy.core.fast_fading import FastFading
 from radio_proxy.core.link_budget import LinkBudget
+from radio_proxy.core.measured_links import MeasuredLinks
+from radio_proxy.core.path_loss import OWN_DB, SILENT_DB, LogDistance, PropagationModel, Wall
 from radio_proxy.core.shadowing import Shadowing
-
-SILENT_DB = -200.0
-"""SNR of what cannot be received at all: cut off, absent, or out of reach [dB]."""
-
-OWN_DB = 200.0
-"""A station's own emission drowns everything else in its receiver [dB]."""
-
-Wall = tuple[float, float, float, float]
-
-
-def walls_crossed(walls: tuple[Wall, ...], x0: float, y0: float, x1: float, y1: float) -> int:
-    """How many wall segments the straight path between two points crosses, whichever way it is taken."""
-    if (x0, y0) > (x1, y1):
-        x0, y0, x1, y1 = x1, y1, x0, y0
-    count = 0
-    for ax, ay, bx, by in walls:
-        side_a = (x1 - x0) * (ay - y0) - (y1 - y0) * (ax - x0)
-        side_b = (x1 - x0) * (by - y0) - (y1 - y0) * (bx - x0)
-        if (side_a > 0.0) == (side_b > 0.0):
-            continue
-        side_0 = (bx - ax) * (y0 - ay) - (by - ay) * (x0 - ax)
-        side_1 = (bx - ax) * (y1 - ay) - (by - ay) * (x1 - ax)
-        count += (side_0 > 0.0) != (side_1 > 0.0)
-    return count
 
 
 class Propagation:
     """Who is where in this tick, and at which mean SNR each receives each. robots: sorted ids.
 
     stations: theirs, all of them. noise_rise_db: noise at every station above the floor, by jams [dB].
-    shadowing, fast_fading: None where there is none.
+    fast_fading, measured: None where there is none. model: by default the built-in one, with these walls
+    and this shadowing.
     """
 
     def __init__(
@@ -53,21 +32,21 @@ class Propagation:
         walls: tuple[Wall, ...],
         shadowing: Shadowing | None = None,
         fast_fading: FastFading | None = None,
+        measured: MeasuredLinks | None = None,
+        model: PropagationModel | None = None,
     ) -> None:
         self.budget = budget
-        self._reach = budget.reach
-        self._shadowing = shadowing
+        self._model = LogDistance(budget, walls, shadowing) if model is None else model
         self._fast_fading = fast_fading
+        self._measured = measured
         self.stations = tuple([StationIndex(i) for i in range(len(robots))])
+        self._robots = robots
         self._index: dict[int, StationIndex] = dict(zip(robots, self.stations, strict=True))
-        self._walls = walls if budget.wall_loss_db else ()
         self._positions: dict[StationIndex, tuple[float, float]] = {}
         self._rows: dict[StationIndex, list[float]] = {}
         self._sensed_by_all: dict[StationIndex, bool] = {}
         self._delays: dict[tuple[StationIndex, StationIndex], int] = {}
         self._farthest: dict[StationIndex, float] = {}
-        self._cells: dict[tuple[int, int], list[tuple[StationIndex, float, float]]] = {}
-        self._near: dict[tuple[int, int], list[tuple[StationIndex, float, float]]] = {}
         self._cuts: tuple[Cut, ...] = ()
         self.noise_rise_db: list[float] = [0.0] * len(robots)
         self._jams: tuple[Jam, ...] = ()
@@ -85,12 +64,12 @@ class Propagation:
     ) -> None:
         """Take over the poses and faults of a tick; nothing is computed until somebody transmits.
 
-        What was computed holds while all of them stay, unless fast fading asks for the way of a tick.
+        What was computed holds while all of them stay, unless fast fading asks for the way of a tick, or
+        measured links for its time.
         tick: when it begins and ends [ns]; robots are at these poses at its end.
         """
-        if self._fast_fading is not None or (
-            (present, cuts, jams) != (self._present, self._cuts, self._jams)
-        ):
+        changing = self._fast_fading is not None or self._measured is not None
+        if changing or ((present, cuts, jams) != (self._present, self._cuts, self._jams)):
             self._stale = True
         self._before, self._present = self._present, present
         self._tick = tick
@@ -175,18 +154,10 @@ class Propagation:
         self._sensed_by_all = {}
         self._delays = {}
         self._farthest = {}
-        self._cells = {}
-        self._near = {}
         self._positions = {}
-        reach = self._reach
         for presence in self._present:
-            index = self._index[presence.robot]
-            x, y = presence.pose.x, presence.pose.y
-            self._positions[index] = (x, y)
-            cell = math.floor(x / reach), math.floor(y / reach)
-            self._cells.setdefault(cell, []).append((index, x, y))
-        if self._shadowing is not None:
-            self._shadowing.place(self._places({}))
+            self._positions[self._index[presence.robot]] = presence.pose.x, presence.pose.y
+        self._model.place([self._positions.get(station) for station in self.stations])
         if self._fast_fading is not None:
             before = {self._index[p.robot]: (p.pose.x, p.pose.y) for p in self._before}
             self._fast_fading.move(self._places(before), self._places({}), *self._tick)
@@ -209,39 +180,24 @@ class Propagation:
         return 10.0 * elementary.log10(total)
 
     def _compute_row(self, sender: StationIndex) -> list[float]:
-        """The row of a sender; the path loss of mean_snr_db, by squared distances, for all in reach."""
-        row = [SILENT_DB] * len(self.stations)
-        budget, reach = self.budget, self._reach
-        nearest = budget.reference_distance * budget.reference_distance
-        reference_db, slope_db = budget.snr_reference_db, 5.0 * budget.exponent
-        x, y = self._positions[sender]
-        shadows = self._shadowing.row_db(sender) if self._shadowing is not None else None
-        for other, there_x, there_y in self._stations_near(x, y):
-            east, north = there_x - x, there_y - y
-            square = east * east + north * north
-            if square <= nearest:
-                row[other] = reference_db
-            elif square <= reach * reach:
-                row[other] = reference_db - slope_db * elementary.log10(square / nearest)
-            else:
-                continue
-            if shadows is not None:
-                row[other] += shadows[other]
-            if self._walls:
-                crossed = walls_crossed(self._walls, x, y, there_x, there_y)
-                row[other] -= crossed * budget.wall_loss_db
+        """What everybody receives of a sender: as it was measured, or as the model says."""
+        if self._measured is None:
+            row = self._model.row_db(sender)
+        elif self._measured.is_all:
+            row = [SILENT_DB] * len(self.stations)
+            for robot, snr_db in self._measured.snr_db(self._robots[sender], self._tick[1]).items():
+                other = self._index[robot]
+                if snr_db is not None and other in self._positions:
+                    row[other] = snr_db
+        else:
+            row = self._model.row_db(sender)
+            for robot, loss_db in self._measured.loss_db(self._robots[sender], self._tick[1]).items():
+                other = self._index[robot]
+                if row[other] > SILENT_DB:
+                    row[other] = SILENT_DB if loss_db is None else row[other] - loss_db
         row[sender] = OWN_DB
         self._apply_cuts(sender, row)
         return row
-
-    def _stations_near(self, x: float, y: float) -> list[tuple[StationIndex, float, float]]:
-        """Stations and their places: all that are in reach of a place, and a few more."""
-        column, line = cell = math.floor(x / self._reach), math.floor(y / self._reach)
-        near = self._near.get(cell)
-        if near is None:
-            around = [(column + dx, line + dy) for dx in (-1, 0, 1) for dy in (-1, 0, 1)]
-            near = self._near[cell] = [one for each in around for one in self._cells.get(each, ())]
-        return near
 
     def _apply_cuts(self, sender: StationIndex, row: list[float]) -> None:
         for cut in self._cuts:

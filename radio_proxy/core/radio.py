@@ -12,25 +12,28 @@ from onehop.contracts.messages import (
     TransmitRequest,
     Truth,
 )
-from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.plugin_names import PROPAGATION, ROUTING
 from onehop.contracts.randomness import generator
 from onehop.contracts.units import nanoseconds
+from radio_proxy.core import path_loss
 from radio_proxy.core.addresses import BROADCAST, RobotId
 from radio_proxy.core.corruption import Corrupter
 from radio_proxy.core.data_message import DataMessage, DataPacket
 from radio_proxy.core.deliveries import Deliveries
 from radio_proxy.core.draws import Draws
+from radio_proxy.core.eavesdropper import Eavesdropper
 from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.fast_fading import fast_fading
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.link_layer import LinkLayer
+from radio_proxy.core.link_rules import link_rules
+from radio_proxy.core.measured_links import MeasuredLinks
 from radio_proxy.core.nic import Nic
+from radio_proxy.core.path_loss import HeldToRange, ModelMaker, PropagationModel
 from radio_proxy.core.propagation import Propagation
-from radio_proxy.core.routing.direct import DirectRouter
-from radio_proxy.core.routing.interface import NicServices, Router
-from radio_proxy.core.routing.mrdv import MrdvRouter
-from radio_proxy.core.routing.mrsr import MrsrRouter
-from radio_proxy.core.shadowing import shadowing
+from radio_proxy.core.routing import built_in as routing
+from radio_proxy.core.routing.built_in import RouterMaker
+from radio_proxy.core.routing.interface import Router
 
 
 class Radio:
@@ -42,17 +45,14 @@ class Radio:
         self._period = briefing.period_ns
         self._section = section
         self._draws = Draws(generator(briefing.seed, "radio"))
-        budget, seed = link_budget(section), briefing.seed
-        self._propagation = Propagation(
-            budget,
-            robots,
-            briefing.walls,
-            shadowing(budget, seed),
-            fast_fading(section, seed),
-        )
+        self._propagation = make_propagation(briefing)
+        self._make_router: RouterMaker = briefing.plugin(ROUTING) or routing.BUILT_IN[section.routing]
         self._corrupter = Corrupter(generator(briefing.seed, "faults"))
-        self._deliveries = Deliveries(self._corrupter)
-        self._link = LinkLayer(robots, section, self._propagation, self._draws, self._deliveries)
+        self._eavesdropper = _eavesdropper(briefing, robots, self._propagation)
+        self._deliveries = Deliveries(self._corrupter, self._eavesdropper)
+        self._link = LinkLayer(
+            robots, section, self._propagation, self._draws, self._deliveries, self._eavesdropper
+        )
         self._events = self._link.events
         self._nics: dict[RobotId, tuple[Nic, Router]] = {}
         self._incarnations: tuple[tuple[int, int], ...] = ()
@@ -101,7 +101,7 @@ class Radio:
     def _start_nic(self, robot: RobotId, incarnation: int, now: int) -> None:
         shared = self._link, self._deliveries, self._events, self._draws
         nic = Nic(robot, incarnation, *shared, self._request_of)
-        router = _router(nic, self._section, now)
+        router = self._make_router(nic, self._section, now)
         self._nics[robot] = nic, router
         self._link.attach(robot, router)
 
@@ -142,10 +142,33 @@ class Radio:
             self._nics[robot][1].submit(data, now)
 
 
-def _router(nic: NicServices, section: RadioSection, now: int) -> Router:
-    """The routing protocol of a scenario on one robot."""
-    if section.routing == "mrsr":
-        return MrsrRouter(nic, section.gamma_distance)
-    if section.routing == "mrdv":
-        return MrdvRouter(nic, section.gamma_distance, now, nanoseconds(section.hello_s))
-    return DirectRouter(nic)
+def _eavesdropper(
+    briefing: RadioBriefing, robots: tuple[RobotId, ...], propagation: Propagation
+) -> Eavesdropper | None:
+    """What listens for the cards of a mission, if they tell whom they hear."""
+    if not briefing.radio.neighbours:
+        return None
+    draws = Draws(generator(briefing.seed, "radio/neighbours"))
+    return Eavesdropper(robots, propagation, link_rules(briefing.radio), draws)
+
+
+def make_propagation(briefing: RadioBriefing) -> Propagation:
+    """At which SNR the robots of a mission receive each other."""
+    section = briefing.radio
+    budget = link_budget(section)
+    return Propagation(
+        budget,
+        tuple(RobotId(robot) for robot in sorted(briefing.robots)),
+        briefing.walls,
+        fast_fading=fast_fading(section, briefing.seed),
+        measured=None if briefing.links is None else MeasuredLinks(briefing.links, section, budget),
+        model=_model(briefing),
+    )
+
+
+def _model(briefing: RadioBriefing) -> PropagationModel:
+    """The propagation that a scenario names: built in, or handed in."""
+    own: ModelMaker | None = briefing.plugin(PROPAGATION)
+    if own is not None:
+        return HeldToRange(own(briefing))
+    return path_loss.BUILT_IN[briefing.radio.propagation](briefing)

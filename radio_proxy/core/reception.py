@@ -22,7 +22,8 @@ from radio_proxy.core.emission import Emission, Judgement, Reception
 from radio_proxy.core.error_rates import CERTAIN_SINR_DB, frame_success
 from radio_proxy.core.event_queue import NEVER
 from radio_proxy.core.link_rules import LinkRules
-from radio_proxy.core.propagation import SILENT_DB, Propagation
+from radio_proxy.core.path_loss import SILENT_DB
+from radio_proxy.core.propagation import Propagation
 
 DETECTION = 4_000
 """Time from the start of a preamble until a receiver has detected it, as in ns-3 [ns]."""

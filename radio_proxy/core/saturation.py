@@ -95,6 +95,9 @@ class Saturation:
     def on_service(self, sender: StationIndex, frame: Frame, now: int) -> None:  # noqa: ARG002
         self.tally.offered += 1
 
+    def on_data_ended(self, sender: StationIndex, frame: Frame, emission: Emission, now: int) -> None:
+        """Nobody listens to what others send."""
+
     def on_received(self, receiver: StationIndex, sender: StationIndex, frame: Frame, now: int) -> None:  # noqa: ARG002
         self.tally.delivered[sender] += 1
         self.tally.delay += now - frame.service_start

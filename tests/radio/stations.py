@@ -106,6 +106,9 @@ class Cell:
                 cause, _ = self.dcf.medium.receivers.judgement(emission, StationIndex(station))
                 self.statuses[sender, station] = cause
 
+    def on_data_ended(self, sender: int, frame: Frame, emission: Emission, now: int) -> None:
+        """Nobody listens to what others send."""
+
     def on_acknowledged(self, sender: int, frame: Frame, now: int) -> None:
         """Nothing to note."""
 

@@ -15,11 +15,11 @@ from radio_proxy.core.link_budget import (
     free_space_loss_db,
     link_budget,
 )
+from radio_proxy.core.path_loss import walls_crossed
 from radio_proxy.core.propagation import (
     OWN_DB,
     SILENT_DB,
     Propagation,
-    walls_crossed,
 )
 
 THESIS, PHYSICAL = link_budget(RadioSection()), link_budget(RadioSection(preset="physical"))

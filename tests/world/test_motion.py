@@ -28,7 +28,7 @@ def drive(
 ) -> tuple[FloatArray, FloatArray, list[int]]:  # fmt: skip
     """Poses, twists and contacts after one period."""
     after, driven = np.array(poses, dtype=np.float64), np.array(twists, dtype=np.float64)
-    touched = Motion(walls, body, period_ns).advance(after, driven)
+    touched = Motion(walls, [body] * len(poses), period_ns).advance(after, driven)
     return after, driven, touched.tolist()
 
 
@@ -49,7 +49,7 @@ def test_arc_solves_the_unicycle_equations_for_every_turn_rate(w: float) -> None
 
 def test_a_full_circle_comes_back() -> None:
     poses, twists = np.array([[20.0, 20.0, 0.0]]), np.array([[1.0, 1.0]])
-    motion = Motion(YARD, BODY, round(math.tau / 100 * 1e9))
+    motion = Motion(YARD, [BODY], round(math.tau / 100 * 1e9))
     for _ in range(100):
         motion.advance(poses, twists)
     assert poses[0, :2] == pytest.approx([20.0, 20.0], abs=1e-6)
@@ -80,7 +80,7 @@ def test_no_robot_goes_through_a_thin_wall() -> None:
 
 def test_a_stopped_robot_turns_and_drives_away() -> None:
     poses, twists = np.array([[19.79, 20.0, 0.0]]), np.array([[3.0, 3.0]])
-    motion = Motion(BLOCK, BODY, PERIOD_NS)
+    motion = Motion(BLOCK, [BODY], PERIOD_NS)
     touched = motion.advance(poses, twists)
     assert touched.tolist() == [WALL]
     assert poses[0, 2] == pytest.approx(0.15)
@@ -152,7 +152,7 @@ def admissible(members: list[tuple[float, float, float, float, float]]) -> Float
 def test_nobody_ever_overlaps_anything(members: list[tuple[float, float, float, float, float]]) -> None:
     state = admissible(members)
     poses = np.ascontiguousarray(state[:, :3])
-    motion = Motion(PEN, BODY, PERIOD_NS)
+    motion = Motion(PEN, [BODY] * len(state), PERIOD_NS)
     for _ in range(40):
         motion.advance(poses, np.ascontiguousarray(state[:, 3:]))
         assert (PEN.clearance(poses[:, :2]) >= BODY.radius - 2e-9).all() or not len(poses)
@@ -170,9 +170,34 @@ def test_the_order_of_the_robots_does_not_matter(
     random.shuffle(order)  # type: ignore[attr-defined]
     poses, twists = np.ascontiguousarray(state[:, :3]), np.ascontiguousarray(state[:, 3:])
     mixed, mixed_twists = poses[order].copy(), twists[order].copy()
-    motion = Motion(PEN, BODY, PERIOD_NS)
+    motion = Motion(PEN, [BODY] * len(state), PERIOD_NS)
     for _ in range(20):
         motion.advance(poses, twists)
         motion.advance(mixed, mixed_twists)
         twists[:], mixed_twists[:] = state[:, 3:], state[order, 3:]
         np.testing.assert_array_equal(poses[order], mixed)
+
+
+radius = st.floats(0.05, 0.5)
+
+
+@settings(max_examples=60, deadline=None)
+@given(crowd, st.lists(radius, min_size=8, max_size=8))
+def test_bodies_of_different_size_never_overlap_anything(
+    members: list[tuple[float, float, float, float, float]], sizes: list[float]
+) -> None:
+    chosen: list[tuple[tuple[float, float, float, float, float], float]] = []
+    for one, size in zip(members, sizes, strict=False):
+        apart = all(math.dist(one[:2], other[:2]) >= size + its for other, its in chosen)
+        if apart and PEN.is_free(one[0], one[1], size):
+            chosen.append((one, size))
+    state = np.array([one for one, _ in chosen]).reshape(-1, 5)
+    radii = np.array([size for _, size in chosen])
+    poses = np.ascontiguousarray(state[:, :3])
+    motion = Motion(PEN, [RobotSection(radius=size) for size in radii] or [BODY], PERIOD_NS)
+    for _ in range(40):
+        motion.advance(poses, np.ascontiguousarray(state[:, 3:]))
+        assert (PEN.clearance(poses[:, :2]) >= radii - 2e-9).all() or not len(poses)
+        gaps = np.hypot(*(poses[:, None, :2] - poses[None, :, :2]).transpose(2, 0, 1))
+        gaps -= radii[:, None] + radii[None, :]
+        assert gaps[np.triu_indices(len(poses), 1)].min(initial=math.inf) >= -2e-9

@@ -112,7 +112,7 @@ def test_given_poses_are_in_degrees_and_in_order_of_id() -> None:
                 "team": TeamSection(size=2),
             },
             "start.poses[1]",
-            "twice robot.radius",
+            "the radii of both",
         ),
     ],
 )

@@ -16,10 +16,10 @@ OBSTACLE = 0
 class ContactDetector:
     """Who is in contact with whom. robots: ids in the order of the rows of poses."""
 
-    def __init__(self, robots: tuple[int, ...], motion: Motion, radius: float) -> None:
+    def __init__(self, robots: tuple[int, ...], motion: Motion) -> None:
         self._robots = robots
         self._motion = motion
-        self._radius = radius
+        self._radii: list[float] = motion.radii.tolist()
         self._in_contact: set[tuple[int, int]] = set()
 
     def onsets(self, poses: FloatArray, touched: Rows) -> tuple[Contact, ...]:
@@ -46,5 +46,6 @@ class ContactDetector:
     def _gap(self, poses: FloatArray, one: int, other: int) -> float:
         x, y = float(poses[one, 0]), float(poses[one, 1])
         if other == WALL:
-            return self._motion.wall_gap(x, y)
-        return math.hypot(x - poses[other, 0], y - poses[other, 1]) - 2.0 * self._radius
+            return self._motion.wall_gap(one, x, y)
+        apart = math.hypot(x - poses[other, 0], y - poses[other, 1])
+        return apart - (self._radii[one] + self._radii[other])

@@ -67,8 +67,10 @@ class Faults:
                 still.append((number, fault))
         self._on_event = still
 
-    def due(self, time_ns: int, by_hand: Iterable[FaultSection] = ()) -> tuple[FaultSection, ...]:
+    def due(self, time_ns: int, by_hand: Sequence[FaultSection] = ()) -> tuple[FaultSection, ...]:
         """The faults that begin now, in the order of the script, then by hand; equal ones count once."""
+        if not (self._waiting or by_hand):
+            return ()
         at_s = time_ns / 1e9
         due = [one for one in self._waiting if one.time_ns <= time_ns]
         self._waiting = [one for one in self._waiting if one.time_ns > time_ns]
@@ -88,6 +90,8 @@ class Faults:
 
     def expire(self, time_ns: int) -> None:
         """End what has lasted its time."""
+        if not self._lasting:
+            return
         if any(lasting.end_ns is not None and lasting.end_ns <= time_ns for lasting in self._lasting):
             self._lasting = [
                 lasting

@@ -27,18 +27,20 @@ def require_free_targets(faults: Iterable[FaultSection], walls: WallMap, inflati
 
 
 def landing(
-    fault: FaultSection, walls: WallMap, inflation: float, bodies: FloatArray, apart: float
-) -> tuple[float, float, float]:
+    fault: FaultSection, walls: WallMap, inflation: float, radius: float, bodies: FloatArray,
+    radii: FloatArray,
+) -> tuple[float, float, float]:  # fmt: skip
     """Pose of a kidnapped robot: the one asked for, or the next place where it touches nobody [m, rad].
 
-    bodies: (n, 2) places of the others [m]. apart: between the middles of two that touch [m].
+    radius: of its body. bodies, radii: (n, 2) places and (n,) radii of the others [m].
     """
+    apart = radius + radii
     heading = math.pi - (math.pi - math.radians(fault.heading_deg)) % math.tau
     for ring in range(_RINGS):
         for number in range(_DIRECTIONS if ring else 1):
             angle = math.tau * number / _DIRECTIONS
-            x = fault.x + 0.5 * apart * ring * elementary.cos(angle)
-            y = fault.y + 0.5 * apart * ring * elementary.sin(angle)
+            x = fault.x + radius * ring * elementary.cos(angle)
+            y = fault.y + radius * ring * elementary.sin(angle)
             gaps = elementary.lengths(bodies[:, 0] - x, bodies[:, 1] - y) - apart
             if np.all(gaps >= _GAP) and walls.is_free(x, y, inflation):
                 return x, y, heading

@@ -8,6 +8,7 @@ Leaves out: noise, beam width and mirror speed; all beams of a scan are taken at
 """
 
 import math
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -147,11 +148,14 @@ def _look_at_disc(
 
 @kernel(error_model="numpy")
 def _scan_all(
-    poses: FloatArray, looking: IntArray, radius: float, limit: float, half: float,
+    poses: FloatArray, looking: IntArray, radii: FloatArray, limit: float, half: float,
     directions: FloatArray, frame: FloatArray, columns: int, rows: int, first: IntArray,
     segments: FloatArray, scans: Scans,
 ) -> None:  # fmt: skip
-    """Scan from the poses, (n, 3), numbered in `looking` into rows of scans; the others are seen."""
+    """Scan from the poses, (n, 3), numbered in `looking` into rows of scans; the others are seen.
+
+    radii: (n,) of their bodies [m].
+    """
     beams = directions.shape[1]
     per_radian = (beams - 1) / (2.0 * half)
     ranges = np.empty(beams)
@@ -171,14 +175,15 @@ def _scan_all(
         for other in range(len(poses)):
             ax, ay = poses[other, 0] - x, poses[other, 1] - y
             _look_at_disc(
-                c * ax + s * ay, c * ay - s * ax, radius, limit, half, per_radian, directions, ranges
-            )
+                c * ax + s * ay, c * ay - s * ax, radii[other], limit, half, per_radian,
+                directions, ranges,
+            )  # fmt: skip
         for beam in range(beams):
             scans[row, beam] = ranges[beam] if ranges[beam] <= limit else math.inf
 
 
 class Laser:
-    """The lasers of a team on one map. Making it loads the compiled kernel: no tick waits for that.
+    """Lasers of one kind on one map. Making it loads the compiled kernel: no tick waits for that.
 
     Directions of the beams are of full precision, as all sines in these kernels; those of Beams are
     rounded to 0.007 nrad.
@@ -193,13 +198,37 @@ class Laser:
         self._cells: CellList = cell_list(walls.segments, walls.bounds, body.laser_range)
         self.scans(np.empty((0, 3)), np.empty(0, dtype=np.int32))
 
-    def scans(self, poses: FloatArray, looking: IntArray) -> Scans:
+    def scans(self, poses: FloatArray, looking: IntArray, radii: FloatArray | None = None) -> Scans:
         """One scan for each robot in `looking`, (k,) int32, rows of poses (n, 3) [m, m, rad].
 
+        radii: (n,) of the robots that may be seen [m], by default those of this laser's own robot.
         (k, n_beams) float32 [m], right to left; +inf where neither a wall nor a robot is in range.
         """
+        if radii is None:
+            radii = np.full(len(poses), self._radius)
         scans = np.empty((len(looking), self._directions.shape[1]), dtype=np.float32)
         _scan_all(
-            poses, looking, self._radius, self._range, self._half, self._directions, *self._cells, scans
-        )
+            poses, looking, radii, self._range, self._half, self._directions, *self._cells, scans
+        )  # fmt: skip
         return scans
+
+
+class Lasers:
+    """The lasers of a team, of as many kinds as it has. bodies: of the robots, row by row."""
+
+    def __init__(self, walls: WallMap, bodies: Sequence[RobotSection]) -> None:
+        self._radii = np.array([body.radius for body in bodies])
+        of_kind: dict[tuple[float, int, float], list[int]] = {}
+        for row, body in enumerate(bodies):
+            kind = body.laser_range, body.laser_beams, body.laser_fov_deg
+            of_kind.setdefault(kind, []).append(row)
+        self._kinds = [(Laser(walls, bodies[rows[0]]), frozenset(rows)) for rows in of_kind.values()]
+
+    def scans(self, poses: FloatArray, looking: Sequence[int]) -> list[Scans]:
+        """The scan of each robot in `looking`, by row of poses (n, 3): (n_beams of its own,)."""
+        found: dict[int, Scans] = {}
+        for laser, rows in self._kinds:
+            own = [row for row in looking if row in rows]
+            scans = laser.scans(poses, np.array(own, dtype=np.int32), self._radii)
+            found.update(zip(own, scans, strict=True))
+        return [found[row] for row in looking]

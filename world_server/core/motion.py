@@ -12,6 +12,7 @@ Leaves out: mass, friction and impact.
 """
 
 import math
+from collections.abc import Sequence
 from typing import TypeAlias
 
 import numpy as np
@@ -78,11 +79,12 @@ def _wall_gap(x: float, y: float, radius: float, cells: CellList) -> float:
 @kernel()
 def _look_ahead(
     time: float, group: Rows, poses: FloatArray, twists: FloatArray, stops: FloatArray,
-    moving: BoolArray, radius: float, cells: CellList, places: FloatArray,
+    moving: BoolArray, radii: FloatArray, cells: CellList, places: FloatArray,
 ) -> tuple[float, float]:  # fmt: skip
     """Put a group where it is at `time`: the smallest gap there [m], and a time without contact [s].
 
-    stops: (n,) when each robot stopped [s]. Gaps between things that stand still do not count.
+    radii: (n,) of the bodies [m]. stops: (n,) when each robot stopped [s]. Gaps between things that
+    stand still do not count.
     """
     worst, safe = math.inf, math.inf
     for k in range(len(group)):
@@ -91,14 +93,14 @@ def _look_ahead(
         places[i, 0], places[i, 1] = x, y
         speed = abs(twists[i, 0]) if moving[i] else 0.0
         if moving[i]:
-            gap = _wall_gap(x, y, radius, cells)
+            gap = _wall_gap(x, y, radii[i], cells)
             worst, safe = min(worst, gap), min(safe, gap / speed)
         for m in range(k):
             j = group[m]
             if moving[i] or moving[j]:
                 closing = speed + (abs(twists[j, 0]) if moving[j] else 0.0)
                 dx, dy = x - places[j, 0], y - places[j, 1]
-                gap = math.sqrt(dx * dx + dy * dy) - 2.0 * radius
+                gap = math.sqrt(dx * dx + dy * dy) - (radii[i] + radii[j])
                 worst, safe = min(worst, gap), min(safe, gap / closing)
     return worst, safe
 
@@ -116,7 +118,7 @@ def _approach(
 @kernel()
 def _stop_colliding(
     free: float, hit: float, group: Rows, poses: FloatArray, twists: FloatArray, stops: FloatArray,
-    moving: BoolArray, radius: float, cells: CellList, places: FloatArray, touched: Rows,
+    moving: BoolArray, radii: FloatArray, cells: CellList, places: FloatArray, touched: Rows,
 ) -> None:  # fmt: skip
     """Stop at `free` whoever drives into something at `hit`; places are those of `hit`.
 
@@ -124,13 +126,13 @@ def _stop_colliding(
     """
     for k in range(len(group)):
         i = group[k]
-        if moving[i] and _wall_gap(places[i, 0], places[i, 1], radius, cells) < -_OVERLAP:
+        if moving[i] and _wall_gap(places[i, 0], places[i, 1], radii[i], cells) < -_OVERLAP:
             touched[i] = WALL
         for m in range(k):
             j = group[m]
             dx, dy = places[i, 0] - places[j, 0], places[i, 1] - places[j, 1]
             apart = math.sqrt(dx * dx + dy * dy)
-            if not (moving[i] or moving[j]) or apart - 2.0 * radius >= -_OVERLAP:
+            if not (moving[i] or moving[j]) or apart - (radii[i] + radii[j]) >= -_OVERLAP:
                 continue
             by_i = moving[i] and _approach(i, j, hit, poses, twists, places) > 0.0
             by_j = moving[j] and _approach(j, i, hit, poses, twists, places) > 0.0
@@ -148,11 +150,11 @@ def _stop_colliding(
 @kernel()
 def _sweep(
     period: float, group: Rows, poses: FloatArray, twists: FloatArray, stops: FloatArray,
-    moving: BoolArray, radius: float, cells: CellList, places: FloatArray, touched: Rows,
+    moving: BoolArray, radii: FloatArray, cells: CellList, places: FloatArray, touched: Rows,
 ) -> None:  # fmt: skip
     """Follow the arcs of a group through one period, stopping robots where they touch something."""
     time = 0.0
-    _, safe = _look_ahead(time, group, poses, twists, stops, moving, radius, cells, places)
+    _, safe = _look_ahead(time, group, poses, twists, stops, moving, radii, cells, places)
     while time < period:
         fastest = 0.0
         for k in range(len(group)):
@@ -161,29 +163,29 @@ def _sweep(
         if fastest == 0.0:
             return
         later = min(period, time + max(safe, _FINEST / fastest))
-        worst, safe = _look_ahead(later, group, poses, twists, stops, moving, radius, cells, places)
+        worst, safe = _look_ahead(later, group, poses, twists, stops, moving, radii, cells, places)
         if worst >= -_OVERLAP:
             time = later
             continue
         free, hit = time, later
         for _ in range(_HALVINGS):
             middle = 0.5 * (free + hit)
-            worst, _ = _look_ahead(middle, group, poses, twists, stops, moving, radius, cells, places)
+            worst, _ = _look_ahead(middle, group, poses, twists, stops, moving, radii, cells, places)
             if worst >= -_OVERLAP:
                 free = middle
             else:
                 hit = middle
-        _look_ahead(hit, group, poses, twists, stops, moving, radius, cells, places)
+        _look_ahead(hit, group, poses, twists, stops, moving, radii, cells, places)
         _stop_colliding(
-            free, hit, group, poses, twists, stops, moving, radius, cells, places, touched
+            free, hit, group, poses, twists, stops, moving, radii, cells, places, touched
         )  # fmt: skip
         time = free
-        _, safe = _look_ahead(time, group, poses, twists, stops, moving, radius, cells, places)
+        _, safe = _look_ahead(time, group, poses, twists, stops, moving, radii, cells, places)
 
 
 @kernel()
 def _group_rows(
-    period: float, poses: FloatArray, twists: FloatArray, radius: float
+    period: float, poses: FloatArray, twists: FloatArray, radii: FloatArray
 ) -> tuple[Rows, Rows]:
     """Label, (n,), equal for robots that may meet within the period, and the size of each label."""
     count = len(poses)
@@ -191,7 +193,7 @@ def _group_rows(
     for i in range(count):
         for j in range(i):
             closing = (abs(twists[i, 0]) + abs(twists[j, 0])) * period
-            near = 2.0 * radius + closing
+            near = radii[i] + radii[j] + closing
             dx, dy = poses[i, 0] - poses[j, 0], poses[i, 1] - poses[j, 1]
             if closing > 0.0 and dx * dx + dy * dy < near * near and label[i] != label[j]:
                 old, new = max(label[i], label[j]), min(label[i], label[j])
@@ -205,24 +207,26 @@ def _group_rows(
 
 
 @kernel()
-def _drive(period: float, poses: FloatArray, twists: FloatArray, radius: float, cells: CellList) -> Rows:
+def _drive(
+    period: float, poses: FloatArray, twists: FloatArray, radii: FloatArray, cells: CellList
+) -> Rows:
     """Move everyone through one period, in place; what each robot drove into, (n,)."""
     count = len(poses)
     touched = np.full(count, NOBODY)
     stops = np.full(count, period)
     moving = twists[:, 0] != 0.0
     places = np.empty((count, 2))
-    label, sizes = _group_rows(period, poses, twists, radius)
+    label, sizes = _group_rows(period, poses, twists, radii)
     for i in range(count):
         alone = sizes[label[i]] == 1
         if alone:
-            gap = _wall_gap(poses[i, 0], poses[i, 1], radius, cells) if moving[i] else math.inf
+            gap = _wall_gap(poses[i, 0], poses[i, 1], radii[i], cells) if moving[i] else math.inf
             if gap > abs(twists[i, 0]) * period:
                 continue
         if label[i] == i:
             group = np.flatnonzero(label == i)
             _sweep(
-                period, group, poses, twists, stops, moving, radius, cells, places, touched
+                period, group, poses, twists, stops, moving, radii, cells, places, touched
             )  # fmt: skip
     for i in range(count):
         x, y = _place(poses[i], twists[i, 0], twists[i, 1], stops[i])
@@ -236,15 +240,18 @@ def _drive(period: float, poses: FloatArray, twists: FloatArray, radius: float, 
 
 
 class Motion:
-    """Moves the robots of a team on one map, period by period. Making one loads the compiled kernels."""
+    """Moves the robots of a team on one map, period by period. Making one loads the compiled kernels.
 
-    def __init__(self, walls: WallMap, body: RobotSection, period_ns: int) -> None:
+    bodies: of the robots, row by row.
+    """
+
+    def __init__(self, walls: WallMap, bodies: Sequence[RobotSection], period_ns: int) -> None:
         self._period = period_ns / 1e9
-        self._radius = body.radius
-        reach = body.radius + body.max_speed * self._period + _MARGIN
+        self.radii: FloatArray = np.array([body.radius for body in bodies])
+        reach = max(body.radius + body.max_speed * self._period for body in bodies) + _MARGIN
         self._cells = cell_list(walls.segments, walls.bounds, reach)
         self.advance(np.empty((0, 3)), np.empty((0, 2)))
-        self.wall_gap(0.0, 0.0)
+        self.wall_gap(0, 0.0, 0.0)
 
     def advance(self, poses: FloatArray, twists: FloatArray) -> Rows:
         """Move robots by their twists, (n, 2) [m/s, rad/s], at poses, (n, 3) [m, m, rad], in place.
@@ -252,9 +259,9 @@ class Motion:
         |v| must not exceed the body's max_speed. A robot that was stopped gets v = 0. Returns what each
         robot drove into, (n,): the row of another robot, WALL or NOBODY.
         """
-        touched: Rows = _drive(self._period, poses, twists, self._radius, self._cells)
+        touched: Rows = _drive(self._period, poses, twists, self.radii, self._cells)
         return touched
 
-    def wall_gap(self, x: float, y: float) -> float:
-        """Distance from the rim of a robot at (x, y) to the nearest wall nearby [m]; inf if none is."""
-        return float(_wall_gap(x, y, self._radius, self._cells))
+    def wall_gap(self, row: int, x: float, y: float) -> float:
+        """Distance from a robot's rim, at (x, y), to the nearest wall nearby [m]; inf if none is."""
+        return float(_wall_gap(x, y, self.radii[row], self._cells))

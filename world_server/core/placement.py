@@ -98,15 +98,17 @@ def _scatter(
 def _given_poses(scenario: Scenario, walls: WallMap) -> FloatArray:
     poses = np.array(scenario.start.poses, dtype=np.float64)
     poses[:, 2] = -np.remainder(np.pi - np.radians(poses[:, 2]), 2.0 * np.pi) + np.pi
+    radii = [body.radius for body in scenario.bodies]
     for number, (x, y, _) in enumerate(poses):
         require_free(walls, f"start.poses[{number}]", x, y, scenario.planner.inflation)
         for other in range(number):
             distance = math.hypot(x - poses[other, 0], y - poses[other, 1])
-            if distance < 2.0 * scenario.robot.radius:
+            least = radii[number] + radii[other]
+            if distance < least:
                 raise ScenarioError(
                     f"start.poses[{number}]",
                     f"only {distance:.2f} m from start.poses[{other}]",
-                    f"at least {2.0 * scenario.robot.radius} m, twice robot.radius",
+                    f"at least {least:g} m, the radii of both",
                 )
     return poses
 

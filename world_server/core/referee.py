@@ -68,7 +68,10 @@ class Referee:
 
     def __init__(self, scenario: Scenario) -> None:
         self._goal = scenario.goal
-        self._beside = beside_goal(scenario.goal, scenario.robot, scenario.planner)
+        self._beside = {
+            robot: beside_goal(scenario.goal, scenario.body_of(robot), scenario.planner)
+            for robot in scenario.team.robots
+        }
         self._spacing = scenario.team.spacing
         self._robots = scenario.team.robots
         self._room = scenario.room_at_goal + _MARGIN
@@ -186,9 +189,9 @@ class Referee:
     def _is_at_goal(self, leader: Presence) -> bool:
         """Whether a leader stands at the goal, or beside what occupies it and says that it arrived."""
         says_so = self._last_notes.get(leader.robot) == "arrived"
-        reach = self._beside if says_so else self._goal.tolerance
         if self._alone:
             return self._from_goal(leader.pose) <= self._room
+        reach = self._beside[leader.robot] if says_so else self._goal.tolerance
         return self._from_goal(leader.pose) <= reach + _MARGIN
 
     def _arrived(self, now: TickSummary) -> tuple[int, ...]:

@@ -30,13 +30,14 @@ from onehop.maps.walls import WallMap
 from world_server.core.contacts import ContactDetector
 from world_server.core.faults import Faults
 from world_server.core.kidnapping import landing, require_free_targets
-from world_server.core.laser import Laser
+from world_server.core.laser import Lasers
 from world_server.core.late_actions import LateActions
 from world_server.core.mission_events import EventDetector
 from world_server.core.motion import Motion
 from world_server.core.orders import Judge
 from world_server.core.placement import start_poses
 from world_server.core.referee import Referee, TickSummary
+from world_server.core.sensor_noise import sensor_noise
 
 KILLED = "killed by a fault"
 RESTARTED = "restarted by a fault"
@@ -51,16 +52,22 @@ class World:
     def __init__(self, scenario: Scenario, walls: WallMap) -> None:
         self._robots = scenario.team.robots
         self._row = {robot: row for row, robot in enumerate(self._robots)}
-        self._body = scenario.robot
+        bodies = scenario.bodies
+        self._motors = [(body.max_speed, body.max_turn_rate) for body in bodies]
         self._period_ns = scenario.clock.period_ns
         self._poses = start_poses(scenario, walls)
         self._walls, self._inflation = walls, scenario.planner.inflation
         require_free_targets(scenario.faults, walls, self._inflation)
         self._judge = Judge(self._robots, walls, self._inflation)
         self._twists = np.zeros((len(self._robots), 2))
-        self._laser = Laser(walls, scenario.robot)
-        self._motion = Motion(walls, scenario.robot, self._period_ns)
-        self._contact_detector = ContactDetector(self._robots, self._motion, scenario.robot.radius)
+        self._lasers = Lasers(walls, bodies)
+        self._noise = {
+            robot: noise
+            for robot, body in zip(self._robots, bodies, strict=True)
+            if (noise := sensor_noise(scenario.seed, robot, body)) is not None
+        }
+        self._motion = Motion(walls, bodies, self._period_ns)
+        self._contact_detector = ContactDetector(self._robots, self._motion)
         self._faults = Faults(scenario.faults, self._robots)
         self._late_actions = LateActions()
         self._events = EventDetector()
@@ -75,6 +82,7 @@ class World:
         self._outcome: Outcome | None = None
         self.tick = 0
         self._truth: Truth | None = None
+        self._observations: dict[int, Observation] | None = None
         self._present_now: tuple[Presence, ...] | None = None
         self._begin_tick()
 
@@ -108,18 +116,34 @@ class World:
         return self._truth
 
     def observe(self) -> dict[int, Observation]:
-        """What each robot that runs at this tick sees now, by id, ids ascending."""
+        """What each robot that runs at this tick sees now, by id, ids ascending.
+
+        Pose and scan are what its sensors say, with their noise if they have any. The same values until
+        advance().
+        """
+        if self._observations is None:
+            self._observations = self._observed()
+        return self._observations
+
+    def _observed(self) -> dict[int, Observation]:
         truth = self.truth()
         tick, time_ns, observers = truth.tick, truth.time_ns, running(truth)
-        looking = np.array([self._row[one.robot] for one in observers], dtype=np.int32)
-        scans = self._laser.scans(self._poses, looking)
-        if truth.blind:
-            scans[[one.robot in truth.blind for one in observers]] = math.inf
-        scans.flags.writeable = False
+        scans = self._lasers.scans(self._poses, [self._row[one.robot] for one in observers])
+        for one, scan in zip(observers, scans, strict=True):
+            if one.robot in truth.blind:
+                scan[:] = math.inf
+            if one.robot in self._noise:
+                self._noise[one.robot].blur(scan)
+            scan.flags.writeable = False
         return {
-            one.robot: Observation(tick, time_ns, one.incarnation, one.pose, one.twist, scan)
+            one.robot: Observation(tick, time_ns, one.incarnation, self._told_pose(one), one.twist, scan)
             for one, scan in zip(observers, scans, strict=True)
         }
+
+    def _told_pose(self, one: Presence) -> Pose:
+        """Where a robot takes itself to be."""
+        noise = self._noise.get(one.robot)
+        return one.pose if noise is None else noise.pose(one.pose)
 
     def advance(self, actions: Mapping[int, Action], by_hand: Sequence[FaultSection] = ()) -> None:
         """Let one period pass. A present robot without an action stands still.
@@ -167,7 +191,7 @@ class World:
         return self._referee.close("aborted", reason, self._tick_summary())
 
     def _begin_tick(self, by_hand: Sequence[FaultSection] = ()) -> None:
-        self._truth = self._present_now = None
+        self._truth = self._present_now = self._observations = None
         self._faults.expire(self.time_ns)
         self._begun = self._faults.due(self.time_ns, by_hand)
         for fault in self._begun:
@@ -188,9 +212,10 @@ class World:
     def _kidnap(self, robot: int, fault: FaultSection) -> None:
         """Put the body of a robot elsewhere, at rest."""
         row = self._row[robot]
-        bodies = self._poses[np.arange(len(self._poses)) != row, :2]
-        apart = 2.0 * self._body.radius
-        self._poses[row] = landing(fault, self._walls, self._inflation, bodies, apart)
+        others = np.arange(len(self._poses)) != row
+        radii = self._motion.radii
+        bodies = self._poses[others, :2], radii[others]
+        self._poses[row] = landing(fault, self._walls, self._inflation, float(radii[row]), *bodies)
         self._twists[row] = 0.0
         self._present_now = None
 
@@ -230,15 +255,15 @@ class World:
             for event in self._events.on_action(robot, action):
                 self._faults.on_event(event, self.time_ns + self._period_ns)
             if robot not in held:
-                driven[row] = self._driven(robot, action.twist)
+                driven[row] = self._driven(robot, row, action.twist)
         self._twists[:] = driven
 
-    def _driven(self, robot: int, twist: Twist) -> tuple[float, float]:
-        """What the motors make of a command: no more than they can."""
+    def _driven(self, robot: int, row: int, twist: Twist) -> tuple[float, float]:
+        """What a robot's motors make of a command: no more than they can."""
         v, w = twist.v, twist.w
         if not (math.isfinite(v) and math.isfinite(w)):
             raise ValueError(f"robot {robot} commands the twist ({v}, {w})")
-        speed, rate = self._body.max_speed, self._body.max_turn_rate
+        speed, rate = self._motors[row]
         return max(-speed, min(speed, v)), max(-rate, min(rate, w))
 
     def _presences(self) -> tuple[Presence, ...]:

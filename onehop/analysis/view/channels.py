@@ -12,16 +12,15 @@ from mcap.writer import Writer
 
 from onehop.analysis.log import Log
 from onehop.analysis.palette import robot_colours
+from onehop.analysis.told import Gravity, events
 from onehop.analysis.view import points, scene
 from onehop.analysis.view.schemas import Log as TextLog
 from onehop.analysis.view.schemas import schema_of
 from onehop.contracts import topics
 from onehop.contracts.beams import Beams
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.fault_section import fault_in_words
 from onehop.contracts.geometry import Pose
-from onehop.contracts.messages import Action, Inbox, Note, Observation, Truth
-from onehop.contracts.printable import printable
+from onehop.contracts.messages import Action, Inbox, Observation, Truth
 from onehop.contracts.topics import robot_name
 from onehop.maps.map_file import load_map
 from onehop.wire.log_reader import LoggedTick
@@ -39,20 +38,15 @@ WALL_STEP = 0.25
 FARTHEST = 1e9
 """No map reaches so far [m]; clouds of points are float32."""
 
-MOST_EVENTS = 100
-"""Notes of one robot and tick that are shown: a team has a few."""
-
 MOST_VALUES = 32
 """Values of a robot that are shown; the world takes no more."""
 
 _LEVELS = {
-    "lost_leader": TextLog.WARNING,
-    "lost_follower": TextLog.WARNING,
-    "no_way": TextLog.ERROR,
-    "target": TextLog.DEBUG,
-    "mode": TextLog.DEBUG,
+    Gravity.DEBUG: TextLog.DEBUG,
+    Gravity.INFO: TextLog.INFO,
+    Gravity.WARNING: TextLog.WARNING,
+    Gravity.ERROR: TextLog.ERROR,
 }
-"""How grave a kind of note is; anything else is information."""
 
 
 class ViewerChannels:
@@ -66,13 +60,13 @@ class ViewerChannels:
             s: max(1, round(s * 1e9 / log.period_ns)) for s in (POSE_S, SCAN_S, LINK_S, BODY_S)
         }
         self._walls = load_map(scenario.map, log.bundle.files).segments
-        self._radius = scenario.robot.radius
+        bodies = dict(zip(log.robots, scenario.bodies, strict=True))
+        self._radii = {robot: body.radius for robot, body in bodies.items()}
         self._colours = robot_colours(log.robots)
-        beams = Beams(scenario.robot)
-        self._angles = beams.angles
-        self._directions = beams.directions.astype(np.float32)
+        self._beams = {robot: Beams(body) for robot, body in bodies.items()}
         self._shapes = {
-            robot: points.body_shape(self._radius, colour) for robot, colour in self._colours.items()
+            robot: points.body_shape(self._radii[robot], colour)
+            for robot, colour in self._colours.items()
         }
         self._channels: dict[str, int] = {}
         self._schemas: dict[str, int] = {}
@@ -104,7 +98,9 @@ class ViewerChannels:
         }
         if tick % self._strides[LINK_S] == 0:
             self._add_links(tick, stamp, actions, poses)
-        self._add_events(tick, stamp, actions, truth)
+        for told in events(truth, actions):
+            level = _LEVELS[told.gravity]
+            self._put("/events", tick, scene.event(stamp, told.who, told.text, level))
 
     def _poses(self, truth: Truth) -> dict[int, Pose]:
         for one in truth.present:
@@ -144,7 +140,7 @@ class ViewerChannels:
         for robot, pose in placed:
             self._put(f"/{robot_name(robot)}/pose", tick, scene.pose_in_map(stamp, pose))
         if gone or came or tick % self._strides[BODY_S] == 0:
-            discs = scene.bodies(stamp, sorted(poses), self._radius, self._colours, gone)
+            discs = scene.bodies(stamp, sorted(poses), self._radii, self._colours, gone)
             self._put("/robots/bodies", tick, discs)
         rings = points.body_points(placed, self._shapes)
         self._put("/robots/points", tick, scene.cloud(stamp, scene.MAP, rings))
@@ -156,16 +152,13 @@ class ViewerChannels:
             message = wire.get(topics.obs(robot))
             if message is None:
                 continue
-            ranges = value_of(Observation, message).scan
-            if len(ranges) != len(self._angles):
+            ranges, beams = value_of(Observation, message).scan, self._beams[robot]
+            if len(ranges) != len(beams.angles):
                 raise DecodeError(f"tick {tick}, {message.key}: a scan of {len(ranges)} beams")
             name = robot_name(robot)
-            self._put(
-                f"/{name}/scan_points",
-                tick,
-                scene.scan_points(stamp, robot, ranges, self._directions),
-            )
-            self._put(f"/{name}/scan", tick, scene.laser_scan(stamp, robot, ranges, self._angles))
+            hits = scene.scan_points(stamp, robot, ranges, beams.directions.astype(np.float32))
+            self._put(f"/{name}/scan_points", tick, hits)
+            self._put(f"/{name}/scan", tick, scene.laser_scan(stamp, robot, ranges, beams.angles))
 
     def _add_links(
         self, tick: int, stamp: int, actions: dict[int, Action], poses: dict[int, Pose]
@@ -192,23 +185,3 @@ class ViewerChannels:
             best = 2.0 * status.threshold_bps
             links.append((leader, pose, status.throughput_bps / best if best > 0 else 1.0))
         self._put("/links/points", tick, scene.cloud(stamp, scene.MAP, points.link_points(links)))
-
-    def _add_events(self, tick: int, stamp: int, actions: dict[int, Action], truth: Truth) -> None:
-        for fault in truth.faults:
-            text = printable(f"fault: {fault_in_words(fault)}")
-            self._put("/events", tick, scene.event(stamp, topics.WORLD, text, TextLog.WARNING))
-        for one in truth.departures:
-            text = printable(f"gone, {one.why}")
-            self._put("/events", tick, scene.event(stamp, robot_name(one.robot), text, TextLog.WARNING))
-        for robot, action in sorted(actions.items()):
-            for note in action.notes[:MOST_EVENTS]:
-                level = _LEVELS.get(note.kind, TextLog.INFO)
-                self._put("/events", tick, scene.event(stamp, robot_name(robot), _text(note), level))
-
-
-def _text(note: Note) -> str:
-    details = ", ".join(
-        f"{key} {value:.2f}" if isinstance(value, float) else f"{key} {value}"
-        for key, value in note.data.items()
-    )
-    return printable(f"{note.kind.replace('_', ' ')}{': ' if details else ''}{details}")

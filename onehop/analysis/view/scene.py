@@ -113,8 +113,9 @@ def walls(stamp_ns: int, segments: npt.NDArray[np.float64]) -> Any:
 
 
 def bodies(
-    stamp_ns: int, robots: Iterable[int], radius: float, colours: dict[int, str], gone: Iterable[int]
-) -> Any:
+    stamp_ns: int, robots: Iterable[int], radii: dict[int, float], colours: dict[int, str],
+    gone: Iterable[int],
+) -> Any:  # fmt: skip
     """Robots as coloured discs with their number, for Foxglove; those that are gone are taken away."""
     message = SceneUpdate()
     for robot in gone:
@@ -125,7 +126,7 @@ def bodies(
         disc = entity.cylinders.add(bottom_scale=1.0, top_scale=0.7)
         disc.pose.orientation.w = 1.0
         disc.pose.position.z = BODY_HEIGHT / 2
-        disc.size.x = disc.size.y = 2 * max(radius, 0.3)
+        disc.size.x = disc.size.y = 2 * max(radii[robot], 0.3)
         disc.size.z = BODY_HEIGHT
         disc.color.r, disc.color.g, disc.color.b = rgb(colours[robot])
         disc.color.a = 1.0

@@ -4,10 +4,11 @@ A policy hears one throughput for each Next that came, and 0 for each that did n
 the slot that the robot has by then. Policies that steer besides are in files of their own (aim.py).
 """
 
+from collections.abc import Callable
 from typing import Protocol
 
 from onehop.contracts.briefings import Briefing
-from onehop.contracts.sections import GainsSection
+from onehop.contracts.plugin_names import GAIN_POLICIES
 from robot_agent.core.motion.lambda2 import Lambda2Gain
 from robot_agent.core.motion.predictive import PredictiveGain
 
@@ -32,8 +33,8 @@ class GainPolicy(Protocol):
 class ConstantGain:
     """Always k_rho_min: the thesis's comparison."""
 
-    def __init__(self, gains: GainsSection) -> None:
-        self._k_rho = gains.k_rho_min
+    def __init__(self, briefing: Briefing) -> None:
+        self._k_rho = briefing.gains.k_rho_min
 
     def heard(self, throughput_bps: float, threshold_bps: float) -> float:  # noqa: ARG002 (the interface)
         return self._k_rho
@@ -42,8 +43,8 @@ class ConstantGain:
 class ThroughputGain:
     """k_rho_max while the last throughput is below the threshold, else k_rho_min (thesis 3.5)."""
 
-    def __init__(self, gains: GainsSection) -> None:
-        self._gains = gains
+    def __init__(self, briefing: Briefing) -> None:
+        self._gains = briefing.gains
 
     def heard(self, throughput_bps: float, threshold_bps: float) -> float:
         low = throughput_bps < threshold_bps
@@ -58,8 +59,8 @@ class SmoothGain:
     filter, and a steady fall is seen before the threshold.
     """
 
-    def __init__(self, gains: GainsSection) -> None:
-        self._gains = gains
+    def __init__(self, briefing: Briefing) -> None:
+        self._gains = briefing.gains
         self._filtered = -1.0
 
     def heard(self, throughput_bps: float, threshold_bps: float) -> float:
@@ -71,15 +72,18 @@ class SmoothGain:
         return self._gains.k_rho_min + urgency * (self._gains.k_rho_max - self._gains.k_rho_min)
 
 
+PolicyMaker = Callable[[Briefing], GainPolicy]
+
+BUILT_IN: dict[str, PolicyMaker] = {
+    "throughput": ThroughputGain,
+    "constant": ConstantGain,
+    "smooth": SmoothGain,
+    "predictive": PredictiveGain,
+    "lambda2": Lambda2Gain,
+}
+
+
 def make_policy(briefing: Briefing) -> GainPolicy:
-    """The policy that a scenario names."""
-    gains = briefing.gains
-    if gains.policy == "predictive":
-        return PredictiveGain(briefing)
-    if gains.policy == "lambda2":
-        return Lambda2Gain(briefing)
-    if gains.policy == "constant":
-        return ConstantGain(gains)
-    if gains.policy == "smooth":
-        return SmoothGain(gains)
-    return ThroughputGain(gains)
+    """The policy that a scenario names: built in, or handed in."""
+    make: PolicyMaker = briefing.plugin(GAIN_POLICIES) or BUILT_IN[briefing.gains.policy]
+    return make(briefing)

@@ -7,7 +7,8 @@ import pytest
 from onehop.commands.suspects import suspects
 from onehop.contracts.errors import InputError
 from onehop.contracts.program_section import BUILT_IN
-from onehop.programs.find import find, installed
+from onehop.plugins import PROGRAMS, installed
+from onehop.programs.find import find
 from robot_agent.core.robot import Robot
 from tests.onehop.programs.fickle import Fickle
 from tests.onehop.programs.samples import Seeker
@@ -16,11 +17,11 @@ from tests.onehop.test_cli import onehop
 
 def test_the_built_in_team_is_offered_by_name_like_any_other_program() -> None:
     assert find("team") is find(BUILT_IN) is Robot
-    assert ("team", BUILT_IN) in [(one.name, one.value) for one in installed()]
+    assert ("team", BUILT_IN) in [(one.name, one.value) for one in installed(PROGRAMS)]
 
 
 def test_a_name_that_no_package_offers_is_refused_with_those_that_are() -> None:
-    with pytest.raises(InputError, match=r"'flock' is offered by no package; .*, or of .*team"):
+    with pytest.raises(InputError, match=r"'flock' is offered by no package; .*, or one of .*'team'"):
         find("flock")
 
 

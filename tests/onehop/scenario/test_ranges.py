@@ -11,8 +11,8 @@ import pytest
 
 from onehop.contracts.errors import ScenarioError
 from onehop.contracts.fault_section import FaultSection
-from onehop.contracts.program_section import RobotEntry
 from onehop.contracts.ranges import Range, out_of_range
+from onehop.contracts.robot_entry import RobotEntry
 from onehop.contracts.scenario import Scenario
 from onehop.scenario import scenario_file
 
@@ -65,7 +65,8 @@ def read(folder: Path, key: str, value: str) -> None:
         fault = {"kind": "'jam'", "at_s": "1", "radius": "1", key.removeprefix("faults."): value}
         setting = f"faults=[{{{', '.join(f'{name}={text}' for name, text in fault.items())}}}]"
     if key in ENTRY:
-        setting = f"robots=[{{{key.removeprefix('robots.')}={value}}}]"
+        name = key.removeprefix("robots.")
+        setting = f"robots=[{{{'' if name == 'id' else 'id=1, '}{name}={value}}}]"
     path = folder / "small.toml"
     path.write_text(MISSION)
     scenario_file.load(path, [setting])
@@ -73,7 +74,8 @@ def read(folder: Path, key: str, value: str) -> None:
 
 def test_the_walk_finds_the_numbers_of_every_section() -> None:
     with_numbers = {key.partition(".")[0] for key in KEYS}
-    assert with_numbers == {field.name for field in dataclasses.fields(Scenario)} - {"name", "profile"}
+    texts = {"name", "profile", "programs"}
+    assert with_numbers == {field.name for field in dataclasses.fields(Scenario)} - texts
 
 
 @pytest.mark.parametrize("value", NUMBERS, ids=lambda value: value[:6] + f"({len(value)})")
