@@ -134,7 +134,10 @@ def _cells(found: Found, summary: dict[str, Any]) -> str:
             words.append(Cell(_shapes(chosen(found.delayed, where)), is_text=True, long=True))
             lines.append(("" if number_ else "group", [*words, *_measures(cell)]))
         for cell in (one for one in summary["bounds"] if one["map"] == ground):
-            words = [Cell(word, is_text=True) for word in (ground, "", f"{cell['link']} link", "", "")]
+            words = [
+                Cell(word, is_text=True)
+                for word in (ground, "", missions.LINK_WORDS[cell["link"]], "", "")
+            ]
             lines.append(("bound", [*words, *_measures(cell)]))
     head = _head("map", "routing", "k_rho", "thesis: lost; shape", "last shape [%]")
     return page.rows(head, lines)
