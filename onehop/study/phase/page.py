@@ -32,7 +32,7 @@ _COLUMNS = (
 _WHY = (
     ("Low gain: the policy works along the whole way",
      "A follower at the leader's speed trails its slot by that speed / k_rho. If that takes it to where "
-     "fades push the throughput below the threshold, it is pulled in again and again, delay or no delay."),
+     "fades push the throughput below the threshold, it is pulled in all the time, delay or no delay."),
     ("High gain: the speed limit hides it",
      "Speed is k_rho times the distance, and at most the limit. Whoever is far enough from its slot to "
      "be below the threshold drives at the limit already; a higher gain adds nothing."),
