@@ -96,7 +96,7 @@ class Bus:
         settings = {
             "mode": "client",
             "connect/endpoints": [endpoint],
-            "connect/timeout_ms": 60_000,
+            "connect/timeout_ms": 300_000,
             "connect/exit_on_failure": True,
             "listen/endpoints": [],
             "scouting/multicast/enabled": False,

@@ -53,12 +53,12 @@ def connectivity_of(bundle: Bundle) -> Connectivity:
 
 DERIVED: dict[str, DerivedSpec] = {
     "energy": DerivedSpec(
-        "what a robot spent in a tick, driving and in its card ([study.md](study.md#energy))",
+        "what a robot spent in a tick, driving and in its card ([sweeps.md](sweeps.md#energy))",
         (("robot", int), ("drive_j", float), ("radio_j", float)),
         _energy,
     ),
     "links": DerivedSpec(
-        "a pair of robots, every 0.5 s ([study.md](study.md#connected))",
+        "a pair of robots, every 0.5 s ([sweeps.md](sweeps.md#connected))",
         (("robot", int), ("other", int), ("snr_db", float), ("linked", bool)),
         _links,
     ),

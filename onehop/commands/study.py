@@ -23,11 +23,12 @@ from onehop.wire.output_folder import held
 
 
 class HowMany(NamedTuple):
-    """The numbers of the command line. jobs: None for one a core."""
+    """What the command line says of how much. jobs: None for one a core. figures: and the page."""
 
     seeds: int
     first_seed: int
     jobs: int | None
+    figures: bool
 
     @property
     def range(self) -> range:
@@ -80,7 +81,7 @@ def thesis(
     folder, progress = out or _fresh("thesis"), Progress()
     asked = Asked(scenarios, settings, how_many.range)
     study = ThesisStudy(asked, folder, workers(how_many.jobs, dask), progress.announce)
-    return _run(study, folder, progress, lambda: _tell_thesis(study, as_json))
+    return _run(study, folder, progress, how_many, lambda: _tell_thesis(study, as_json))
 
 
 def policies(grid: Grid, how_many: HowMany, dask: str | None, out: Path | None, as_json: bool) -> int:
@@ -88,16 +89,19 @@ def policies(grid: Grid, how_many: HowMany, dask: str | None, out: Path | None, 
     folder, progress = out or _fresh("policies"), Progress()
     seeds, run = how_many.range, workers(how_many.jobs, dask)
     study = PolicyStudy(grid, seeds, folder, run, progress.announce)
-    return _run(study, folder, progress, lambda: _tell_policies(study, grid, as_json))
+    return _run(study, folder, progress, how_many, lambda: _tell_policies(study, grid, as_json))
 
 
-def _run(study: Study, folder: Path, progress: Progress, tell: Callable[[], None]) -> int:
+def _run(
+    study: Study, folder: Path, progress: Progress, how_many: HowMany, tell: Callable[[], None]
+) -> int:
     """Run a study and tell what it says, also if it is stopped."""
     with held(folder), progress:
         try:
             study.run()
-            progress.put("drawing figures …")
-            study.draw()
+            if how_many.figures:
+                progress.put("drawing figures …")
+                study.draw()
         except Stopped:
             progress.stop()
             if study.summary is not None:

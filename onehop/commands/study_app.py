@@ -14,6 +14,10 @@ from onehop.contracts.errors import InputError
 
 Seeds = Annotated[int, Option(help="Missions of each cell.", callback=within(numbers.SEEDS))]
 
+Figures = Annotated[
+    bool, Option("--figures/--no-figures", help="Draw figures and write the page, or tell tables alone.")
+]
+
 THESIS = Path("scenarios") / "thesis"
 
 study_app = Typer(
@@ -40,6 +44,7 @@ def thesis(
     jobs: Jobs = None,
     dask: Dask = None,
     out: Out = None,
+    figures: Figures = True,
     settings: Settings = [],  # noqa: B006 - typer needs a list
     as_json: AsJson = False,
 ) -> None:
@@ -53,7 +58,7 @@ def thesis(
     """
     from onehop.commands import study as command
 
-    how_many = command.HowMany(seeds, seed, jobs)
+    how_many = command.HowMany(seeds, seed, jobs, figures)
     leave(command.thesis(scenarios, settings, how_many, dask, out, as_json))
 
 
@@ -75,6 +80,7 @@ def policies(
     jobs: Jobs = None,
     dask: Dask = None,
     out: Out = None,
+    figures: Figures = True,
     settings: Settings = [],  # noqa: B006
     as_json: AsJson = False,
 ) -> None:
@@ -90,7 +96,7 @@ def policies(
 
     gains, holds = _numbers("--k-rho-min", k_rho_min), _numbers("--hold", hold)
     grid = Grid(scenario, settings, gains, holds, tuple(policies.split(",")))
-    how_many = command.HowMany(seeds, seed, jobs)
+    how_many = command.HowMany(seeds, seed, jobs, figures)
     leave(command.policies(grid, how_many, dask, out, as_json))
 
 

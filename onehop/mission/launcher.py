@@ -17,7 +17,7 @@ from onehop.mission.operator import LOST_WORD, STOPPED, Ending, OperatorSession,
 from onehop.mission.processes import ProcessGroup, free_endpoint
 from onehop.mission.rendezvous import Rendezvous, published
 from onehop.mission.stops import StopRequest
-from onehop.node.bus import LEASE_MS, Bus, open_client
+from onehop.node.bus import CONNECT_TIMEOUT_MS, LEASE_MS, Bus, open_client
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import LOG
 from onehop.wire.summary import read_summary, summarize, write_summary
@@ -28,8 +28,8 @@ START_ATTEMPTS = 5
 CONNECT_TRY_MS = 500
 """How long one attempt to reach the world may take: between two the children are looked at."""
 
-CONNECT_S = 60.0
-"""How long the world may take to open the bus [s]."""
+CONNECT_S = CONNECT_TIMEOUT_MS / 1000.0
+"""How long the world may take to open the bus [s]: as long as its clients wait for it."""
 
 STOPPED_S = LEASE_MS / 1000.0
 """How long the world may be stopped before its bus is there [s]: as long as afterwards."""

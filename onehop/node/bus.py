@@ -42,8 +42,9 @@ CHANNEL_MESSAGES = 100_000
 PULSE_S = 0.1
 """How often a process that waits with a time limit looks at the clock."""
 
-CONNECT_TIMEOUT_MS = 60_000
-"""How long a client waits for the router to appear."""
+CONNECT_TIMEOUT_MS = 300_000
+"""How long a client waits for the router to appear: the first world of an installation compiles its
+kernels before, which takes more than a minute on a machine that has much else to do."""
 
 LEASE_MS = 3000
 """Silence after which a stopped process, the world too, counts as gone; a killed one is gone at once. A

@@ -5,6 +5,9 @@ from enum import StrEnum
 
 from onehop.study.statistics import Estimate
 
+LEAST_SEEDS = 5
+"""With fewer nothing is decided: that four seeds agree happens by chance in one case of eight."""
+
 
 class Expects(StrEnum):
     """What a claim says of a mean: of a difference, or (NONE) of a count."""
@@ -18,7 +21,7 @@ class Expects(StrEnum):
 class Verdict(StrEnum):
     """CONFIRMED: the whole interval is where the claim says. REFUTED: all of it is where it cannot be.
 
-    UNDECIDED: neither. NO_DATA: nothing was measured.
+    UNDECIDED: neither, or too few seeds. NO_DATA: nothing was measured.
     """
 
     CONFIRMED = "confirmed"
@@ -74,14 +77,14 @@ def judge(claim: Claim, estimate: Estimate, seeds: int) -> Judgement:
 
     Of NONE: confirmed if it was none in every mission, refuted if the interval excludes none.
     """
-    return Judgement(claim, _verdict(claim, estimate), estimate, seeds)
+    return Judgement(claim, _verdict(claim, estimate, seeds), estimate, seeds)
 
 
-def _verdict(claim: Claim, estimate: Estimate) -> Verdict:
+def _verdict(claim: Claim, estimate: Estimate, seeds: int) -> Verdict:
     mean, low, high = estimate
     if mean is None:
         return Verdict.NO_DATA
-    if low is None or high is None:
+    if low is None or high is None or seeds < LEAST_SEEDS:
         return Verdict.UNDECIDED
     match claim.expects:
         case Expects.LESS:

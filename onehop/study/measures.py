@@ -1,7 +1,7 @@
 """What is measured of a mission while it runs, without a log.
 
 Of the followers while their team drives: a robot that says that it obeys another, and is neither at
-setup nor stopped. docs/study.md has the definitions for people.
+setup nor stopped. docs/sweeps.md has the definitions for people.
 """
 
 from collections.abc import Mapping

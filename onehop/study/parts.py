@@ -18,6 +18,15 @@ Announce = Callable[[str, int], Listener]
 """Is told that a part of a study begins, and how much is wanted; gives who listens to it."""
 
 
+OF_RUN = ("missions_per_s", "sim_s_per_s", "table")
+"""What `--json` says of the run itself: how fast it was, and where the table is, None without Polars."""
+
+
+def fewer(seeds: range) -> range:
+    """The first quarter of the seeds: for what is only laid beside the cells that are compared."""
+    return seeds[: max(2, len(seeds) // 4)]
+
+
 class Parts:
     """Runs the parts of a study. names: of each part, for people. crashed: what has no row, of all."""
 
@@ -35,12 +44,11 @@ class Parts:
         cells: Sequence[Cell],
         seeds: range,
         rows: list[Row],
-        rate: dict[str, float] | None = None,
+        run: dict[str, Any] | None = None,
     ) -> None:
         """Run one sweep in a folder of its own, FOLDER/part.
 
-        rows and rate get the missions, and missions_per_s and sim_s_per_s, whatever ends it. Raises
-        InputError.
+        rows get the missions, and run gets what OF_RUN names, whatever ends it. Raises InputError.
         """
         folder = self._folder / part
         with explained(folder, "a folder that can be written"):
@@ -52,8 +60,8 @@ class Parts:
         finally:
             rows += sweep.rows
             self.crashed += sweep.crashed
-            if rate is not None and sweep.summary is not None:
-                rate.update({key: sweep.summary[key] for key in ("missions_per_s", "sim_s_per_s")})
+            if run is not None and sweep.summary is not None:
+                run.update({key: sweep.summary[key] for key in OF_RUN})
 
     def collect(
         self,

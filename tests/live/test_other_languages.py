@@ -97,8 +97,13 @@ def test_they_know_nothing_of_onehop() -> None:
 
 def test_a_robot_in_rust_takes_the_place_of_a_program(digest: str, tmp_path: Path) -> None:
     if shutil.which("cargo") is None:
-        pytest.skip("no cargo here: rustup, or Debian's package cargo")
-    package = ("--locked", "--manifest-path", str(EXAMPLES / "rust_robot" / "Cargo.toml"))
+        pytest.skip("no cargo here: rustup installs it")
+    manifest = EXAMPLES / "rust_robot" / "Cargo.toml"
+    wanted = tomllib.loads(manifest.read_text())["package"]["rust-version"]
+    said = subprocess.run(["cargo", "--version"], capture_output=True, text=True, check=True).stdout
+    if tuple(map(int, said.split()[1].split(".")[:2])) < tuple(map(int, wanted.split("."))):
+        pytest.skip(f"{said.strip()} is here, {wanted} is needed: rustup installs it")
+    package = ("--locked", "--manifest-path", str(manifest))
     fetched = subprocess.run(["cargo", "fetch", *package], capture_output=True, text=True, check=False)
     if fetched.returncode:
         pytest.skip(f"its crates cannot be had: {fetched.stderr.strip().splitlines()[-1]}")

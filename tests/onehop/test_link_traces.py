@@ -165,6 +165,7 @@ def test_on_top_of_the_model_a_loss_weakens_what_it_says(tmp_path: Path) -> None
     assert levels["weaker"][:3] == pytest.approx(levels["plain"][:3] - 6.0)
 
 
+@pytest.mark.slow
 def test_a_trace_in_which_nobody_hears_anybody_makes_teams_of_one(tmp_path: Path) -> None:
     log_of(trial(tmp_path, everyone("snr_db", -50.0), "clock.limit_s=30"), tmp_path / "mission.mcap")
     log = LogFile(tmp_path / "mission.mcap")
@@ -200,6 +201,12 @@ def test_a_missing_file_and_a_wrong_line_are_told_as_the_scenario_is_read(tmp_pa
         trial(tmp_path, "time_s,from,to,snr_db\n0,1,9,5\n")
 
 
+@pytest.mark.parametrize("setting", ["radio.links='trial.csv'", "radio.neighbours=true"])
+def test_what_only_a_modelled_radio_has_is_refused_beside_a_bound(tmp_path: Path, setting: str) -> None:
+    with pytest.raises(InputError, match='set beside link = "perfect"; link = "modelled"'):
+        field(tmp_path, setting, "radio.link='perfect'")
+
+
 def test_a_mission_that_is_copied_takes_its_trace_along(tmp_path: Path) -> None:
     bundle = self_contained(trial(tmp_path, GOOD), "m")
     (tmp_path / "copy").mkdir()
@@ -212,6 +219,7 @@ def test_chaos_leaves_the_trace_of_another_team_away(tmp_path: Path) -> None:
     assert drawn.scenario.radio.links == ""
 
 
+@pytest.mark.slow
 def test_the_example_of_this_repository_loses_a_link_and_goes_around_it(tmp_path: Path) -> None:
     bundle = scenario_file.load(REPOSITORY / "scenarios" / "link-trace.toml")
     log_of(bundle, tmp_path / "mission.mcap")

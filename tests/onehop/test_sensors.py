@@ -48,6 +48,7 @@ def test_without_noise_a_robot_is_told_the_truth(tmp_path: Path) -> None:
     assert all(seen[one.robot].pose is one.pose for one in ground.truth().present)
 
 
+@pytest.mark.slow
 def test_noise_has_the_spread_that_was_asked_for_and_bounds(tmp_path: Path) -> None:
     true, told = world(tmp_path, "clock.limit_s=900"), world(tmp_path, *NOISY, "clock.limit_s=900")
     off, ranges = [], []

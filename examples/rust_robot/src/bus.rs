@@ -43,7 +43,7 @@ impl Bus {
         for (key, value) in [
             ("mode", "\"client\"".to_string()),
             ("connect/endpoints", format!("[{endpoint:?}]")),
-            ("connect/timeout_ms", "60000".to_string()),
+            ("connect/timeout_ms", "300000".to_string()),
             ("connect/exit_on_failure", "true".to_string()),
             ("listen/endpoints", "[]".to_string()),
             ("scouting/multicast/enabled", "false".to_string()),

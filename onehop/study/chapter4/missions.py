@@ -22,6 +22,7 @@ CONSTANT, VARIABLE = "constant", "throughput"
 POLICIES = (CONSTANT, VARIABLE)
 
 LINKS = ("perfect", "none")
+LINK_WORDS = {"perfect": "perfect link", "none": "no link"}
 """`radio.link` of the bounds: every message arrives at once, and none does."""
 
 HOLD_AT_S = 60.0

@@ -12,6 +12,7 @@ from onehop.study.chapter4.claims import ROUTING_WORD, ideal_claim, policy_claim
 from onehop.study.chapter4.figures import NAMES
 from onehop.study.chapter4.found import Found
 from onehop.study.chapter4.reported import REPORTED
+from onehop.study.claims import LEAST_SEEDS
 from onehop.study.comparison import chosen
 from onehop.study.in_words import number, told
 from onehop.study.page import Cell, Picture
@@ -75,7 +76,7 @@ def _body(found: Found, summary: dict[str, Any], pictures: Sequence[Picture]) ->
     yield page.paragraph(
         "Mean of the paired difference and its 95 % interval: variable less constant k_rho, MRSR less "
         "MRDV, modified less original planner. A claim is confirmed or refuted if the whole interval is "
-        "on one side of what it says."
+        f"on one side of what it says, over at least {LEAST_SEEDS} seeds."
     )
     yield page.claims(policy_claims(found.delayed))
     yield page.claims([*routing_claims(found.delayed), ideal_claim(found.undelayed)])
@@ -134,7 +135,10 @@ def _cells(found: Found, summary: dict[str, Any]) -> str:
             words.append(Cell(_shapes(chosen(found.delayed, where)), is_text=True, long=True))
             lines.append(("" if number_ else "group", [*words, *_measures(cell)]))
         for cell in (one for one in summary["bounds"] if one["map"] == ground):
-            words = [Cell(word, is_text=True) for word in (ground, "", f"{cell['link']} link", "", "")]
+            words = [
+                Cell(word, is_text=True)
+                for word in (ground, "", missions.LINK_WORDS[cell["link"]], "", "")
+            ]
             lines.append(("bound", [*words, *_measures(cell)]))
     head = _head("map", "routing", "k_rho", "thesis: lost; shape", "last shape [%]")
     return page.rows(head, lines)

@@ -15,8 +15,7 @@ from onehop.campaign.workers import Run
 from onehop.scenario.bundle import Bundle
 from onehop.study.chapter4 import failing, figures, missions, page, shown, way_figures, ways
 from onehop.study.chapter4.found import Found
-from onehop.study.parts import Announce, Parts
-from onehop.study.sweeping import TABLE
+from onehop.study.parts import Announce, Parts, fewer
 from onehop.wire.output_folder import explained
 
 SUMMARY, PAGE, FIGURES, LOGS = "study.json", "thesis.html", "figures", "logs"
@@ -41,11 +40,6 @@ class Asked:
     settings: Sequence[str]
     seeds: range
 
-    @property
-    def fewer(self) -> range:
-        """The first quarter of the seeds: for what is only laid beside the twelve cells."""
-        return self.seeds[: max(2, len(self.seeds) // 4)]
-
 
 class ThesisStudy:
     """The study in its folder. found, summary: as far as it came, whatever ended it. page: if drawn."""
@@ -55,7 +49,7 @@ class ThesisStudy:
         self._folder = folder
         self._workers = workers
         self._parts = Parts(folder, workers, announce, PARTS)
-        self._rate = {"missions_per_s": 0.0, "sim_s_per_s": 0.0}
+        self._of_run: dict[str, Any] = {"missions_per_s": 0.0, "sim_s_per_s": 0.0, "table": None}
         self.found = Found()
         self.page: Path | None = None
         self.summary: dict[str, Any] | None = None
@@ -76,11 +70,11 @@ class ThesisStudy:
             )
         }  # fmt: skip
         alone = list(ways.orders(asked.scenarios, asked.seeds))
-        dying = list(failing.orders(asked.scenarios, asked.fewer))
+        dying = list(failing.orders(asked.scenarios, fewer(asked.seeds)))
         try:
-            parts.sweep(DELAYED, bases, cells[DELAYED], asked.seeds, found.delayed, self._rate)
-            parts.sweep(UNDELAYED, bases, cells[UNDELAYED], asked.fewer, found.undelayed)
-            parts.sweep(BOUNDS, bases, cells[BOUNDS], asked.fewer, found.bounds)
+            parts.sweep(DELAYED, bases, cells[DELAYED], asked.seeds, found.delayed, self._of_run)
+            parts.sweep(UNDELAYED, bases, cells[UNDELAYED], fewer(asked.seeds), found.undelayed)
+            parts.sweep(BOUNDS, bases, cells[BOUNDS], fewer(asked.seeds), found.bounds)
             parts.collect(WAYS, _about(alone), ways.run_way, alone, found.ways)
             parts.collect(FAILING, _about(dying), failing.run_failing, dying, found.failing)
         finally:
@@ -108,8 +102,7 @@ class ThesisStudy:
         told = {
             "missions": len(found.delayed),
             "wanted": twelve * len(asked.seeds),
-            **self._rate,
-            "table": str(self._folder / DELAYED / TABLE),
+            **self._of_run,
             "cells": found.cells(),
             "bounds": found.bound_cells(),
             "differences": found.differences(),

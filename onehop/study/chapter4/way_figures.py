@@ -45,10 +45,9 @@ def _corner(bundle: Bundle, rows: Sequence[Row]) -> Figure:
         kept = [row for row in chosen(rows, {"planner": planner}) if row["way"] is not None]
         if kept:
             _way(axes, kept[0], OKABE_ITO[0])
-            axes.set_title(
-                f"{planner}, seed {kept[0]['seed']}: {kept[0]['answer']} ({kept[0]['sim_s']:.0f} s)",
-                loc="left", fontsize=10,
-            )  # fmt: skip
+            word = "arrived after" if kept[0]["arrived"] else "not there after"
+            title = f"{planner}, seed {kept[0]['seed']}: {word} {kept[0]['sim_s']:.0f} s"
+            axes.set_title(title, loc="left", fontsize=10)
     return figure
 
 

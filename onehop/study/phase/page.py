@@ -6,7 +6,7 @@ from typing import Any
 
 from onehop.campaign.lines import Row
 from onehop.study import page
-from onehop.study.chapter4.missions import HELD, HOLD_AT_S, SETUP_TIMEOUT_S
+from onehop.study.chapter4.missions import HELD, HOLD_AT_S, LINK_WORDS, SETUP_TIMEOUT_S
 from onehop.study.in_words import told
 from onehop.study.page import Cell, Picture
 from onehop.study.phase.frontier import Effect, Place, effects
@@ -28,6 +28,19 @@ _COLUMNS = (
     ("routing [kB]", "overhead_bytes", 1e3), ("delay [ms]", "delay_ms", 1.0),
     ("driving [kJ]", "drive_j", 1e3), ("card [J]", "radio_j", 1.0),
 )  # fmt: skip
+
+_WHY = (
+    ("Low gain: the policy works along the whole way",
+     "A follower at the leader's speed trails its slot by that speed / k_rho. If that takes it to where "
+     "fades push the throughput below the threshold, it is pulled in all the time, delay or no delay."),
+    ("High gain: the speed limit hides it",
+     "Speed is k_rho times the distance, and at most the limit. Whoever is far enough from its slot to "
+     "be below the threshold drives at the limit already; a higher gain adds nothing."),
+    ("Long delay: no gain can help",
+     "A robot that is held does not move. Once its leader is out of range, whether it is heard again is "
+     "up to relays and chance."),
+)  # fmt: skip
+"""The mechanism, for any numbers."""
 
 _CONCLUDE = (
     ("A place inside the frontier",
@@ -65,6 +78,8 @@ def _body(grid: Grid, rows: Sequence[Row], summary: dict[str, Any], picture: Pic
     for policy in grid.policies[1:]:
         yield page.paragraph(f"{policy} against {grid.policies[0]}: " + in_short(grid, rows, policy))
     yield page.picture(picture)
+    yield page.heading("What to expect, and why")
+    yield page.definitions(_WHY)
     yield page.heading("Every place")
     yield page.paragraph("Means and their 95 % intervals; in grey the bounds.")
     yield _cells(summary)
@@ -109,7 +124,7 @@ def _cells(summary: dict[str, Any]) -> str:
         for kind, rows, name in (("", summary["cells"], "policy"), ("bound", summary["bounds"], "link")):
             for row in rows:
                 if tuple(row[key] for key in keys) == place:
-                    word = row[name] if not kind else f"{row[name]} link"
+                    word = row[name] if not kind else LINK_WORDS[row[name]]
                     lines.append(
                         (kind, [*_place(row), Cell(word, is_text=True), *_measures(row, False)])
                     )

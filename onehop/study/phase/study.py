@@ -15,11 +15,10 @@ from onehop.campaign.workers import Run
 from onehop.study.cell_summary import cell, changed
 from onehop.study.comparison import chosen, strata
 from onehop.study.page import Picture
-from onehop.study.parts import Announce, Parts
+from onehop.study.parts import Announce, Parts, fewer
 from onehop.study.phase import page
 from onehop.study.phase.grid import Grid
 from onehop.study.phase.heat_maps import heat_maps
-from onehop.study.sweeping import TABLE
 from onehop.wire.output_folder import explained
 
 SUMMARY, PAGE, FIGURES = "study.json", "policies.html", "figures"
@@ -38,7 +37,7 @@ class PolicyStudy:
         self._seeds = seeds
         self._folder = folder
         self._parts = Parts(folder, workers, announce, PARTS)
-        self._rate = {"missions_per_s": 0.0, "sim_s_per_s": 0.0}
+        self._of_run: dict[str, Any] = {"missions_per_s": 0.0, "sim_s_per_s": 0.0, "table": None}
         self.rows: list[Row] = []
         self.bounds: list[Row] = []
         self.page: Path | None = None
@@ -54,9 +53,8 @@ class PolicyStudy:
         grid, seeds, bases = self._grid, self._seeds, [self._grid.base()]
         cells, bounds = grid.cells(seeds[0]), grid.bounds(seeds[0])
         try:
-            self._parts.sweep(CELLS, bases, cells, seeds, self.rows, self._rate)
-            fewer = seeds[: max(2, len(seeds) // 4)]
-            self._parts.sweep(BOUNDS, bases, bounds, fewer, self.bounds)
+            self._parts.sweep(CELLS, bases, cells, seeds, self.rows, self._of_run)
+            self._parts.sweep(BOUNDS, bases, bounds, fewer(seeds), self.bounds)
         finally:
             self.summary = self._told()
         return self.summary
@@ -83,8 +81,7 @@ class PolicyStudy:
         told = {
             "missions": len(self.rows),
             "wanted": len(grid.places) * len(grid.policies) * len(self._seeds),
-            **self._rate,
-            "table": str(self._folder / CELLS / TABLE),
+            **self._of_run,
             "cells": [cell(where, chosen(self.rows, where)) for where in cells],
             "bounds": [cell(where, chosen(self.bounds, where)) for where in bounds],
             "differences": [

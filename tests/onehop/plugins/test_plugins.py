@@ -85,6 +85,7 @@ def test_a_planner_alone_is_tried_with_plan(tmp_path: Path) -> None:
     assert trial.snapshots == ()
 
 
+@pytest.mark.slow
 def test_the_checker_does_not_guess_who_hears_whom_by_a_plugin(tmp_path: Path) -> None:
     log_of(field(tmp_path, "radio.propagation=flat", "clock.limit_s=30"), tmp_path / "mission.mcap")
     report = judge(LogFile(tmp_path / "mission.mcap"))

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from onehop.study.claims import Claim, Expects, Verdict, judge
+from onehop.study.claims import LEAST_SEEDS, Claim, Expects, Verdict, judge
 from onehop.study.statistics import Estimate
 
 ABOVE, BELOW, ACROSS = Estimate(2.0, 1.0, 3.0), Estimate(-2.0, -3.0, -1.0), Estimate(0.5, -0.5, 1.5)
@@ -41,6 +41,12 @@ def test_one_seed_decides_nothing_and_none_is_no_data(expects: Expects) -> None:
     claim = Claim("it is so", "4.2", "lost", expects)
     assert judge(claim, ALONE, 1).verdict is Verdict.UNDECIDED
     assert judge(claim, NOTHING, 0).verdict is Verdict.NO_DATA
+
+
+def test_too_few_seeds_decide_nothing() -> None:
+    claim = Claim("it is so", "4.2", "lost", Expects.LESS)
+    assert judge(claim, BELOW, LEAST_SEEDS - 1).verdict is Verdict.UNDECIDED
+    assert judge(claim, BELOW, LEAST_SEEDS).verdict is Verdict.CONFIRMED
 
 
 def test_a_judgement_is_json() -> None:

@@ -19,7 +19,7 @@ def test_words_are_never_markup(tmp_path: Path) -> None:
         page.paragraph(EVIL),
         page.definitions([(EVIL, EVIL)]),
         page.rows([Cell(EVIL)], [("", [Cell(EVIL, is_text=True)])]),
-        page.claims([judge(claim, Estimate(-1.0, -2.0, -0.5), 3)]),
+        page.claims([judge(claim, Estimate(-1.0, -2.0, -0.5), 9)]),
         page.picture(Picture(EVIL, EVIL, figure)),
     ]
     path = tmp_path / "page.html"
@@ -34,5 +34,5 @@ def test_words_are_never_markup(tmp_path: Path) -> None:
 
 def test_verdicts_are_counted_in_words() -> None:
     claim = Claim("so", "4.2", "lost", Expects.LESS)
-    found = [judge(claim, Estimate(sign, sign, sign), 3) for sign in (-1.0, -1.0, 1.0)]
+    found = [judge(claim, Estimate(sign, sign, sign), 9) for sign in (-1.0, -1.0, 1.0)]
     assert page.verdicts(found) == "2 confirmed, 1 refuted"

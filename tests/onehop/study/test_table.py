@@ -96,5 +96,5 @@ def test_a_sweep_of_nothing_yet_is_an_empty_table(tmp_path: Path) -> None:
 
 
 def test_every_column_is_explained() -> None:
-    text = (Path(__file__).parents[3] / "docs" / "study.md").read_text()
+    text = (Path(__file__).parents[3] / "docs" / "sweeps.md").read_text()
     assert [name for name in COLUMNS if f"`{name}`" not in text] == []
