@@ -22,7 +22,7 @@ from robot_agent.core.motion.predictive import PredictiveGain
 SCENARIOS = Path(__file__).parents[1] / "scenarios" / "thesis"
 MEASURES = {
     "lost": ("lost", 1.0), "throughput_bps": ("kb/s", 1e3), "below_threshold_s": ("below s", 1.0),
-    "error_m": ("error m", 1.0), "drive_j": ("driving J", 1.0), "radio_j": ("card J", 1.0),
+    "error_m": ("error m", 1.0), "drive_j": ("driving kJ", 1e3), "radio_j": ("card J", 1.0),
 }  # fmt: skip
 
 
