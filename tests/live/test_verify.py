@@ -1,6 +1,7 @@
 """`onehop verify`: what makes a program fickle is found, in which tick and field."""
 
 import json
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -8,6 +9,8 @@ import pytest
 from tests.onehop.test_cli import onehop
 
 pytestmark = pytest.mark.live
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
 def verify(program: str, *words: str) -> tuple[dict[str, Any], int]:
@@ -56,3 +59,11 @@ def test_a_step_that_takes_longer_than_a_tick_is_too_slow() -> None:
     assert answer["step_ms_p50"] > answer["period_ms"] == 1.0
     assert answer["deterministic"]
     assert status == 1
+
+
+@pytest.mark.parametrize("program", ["flocking:Flocking", "relay:Relay", "mapless:Mapless"])
+def test_the_worked_examples_say_the_same_every_time(program: str) -> None:
+    done = onehop("verify", program, "--missions", "1", "--json", cwd=EXAMPLES)
+    assert done.stdout, done.stderr
+    answer = json.loads(done.stdout)
+    assert (answer["deterministic"], answer["first"], answer["failures"]) == (True, None, [])
