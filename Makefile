@@ -7,7 +7,7 @@ LOWEST_PYTHON ?= python3.11
 LOWEST := .venv-lowest
 LOWEST_STAMP := $(LOWEST)/.installed
 
-.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign study bench fuzz compose-demo compose-faults clean
+.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign study rust bench fuzz compose-demo compose-faults clean
 
 setup: $(STAMP)
 
@@ -61,6 +61,9 @@ campaign: setup  ## what takes minutes and stays out of CI
 study: setup  ## chapter 4 of the thesis and the phase diagram of its gain policy, with few seeds: minutes
 	$(BIN)/onehop study thesis --seeds 3 --out runs/study-thesis
 	$(BIN)/onehop study policies --seeds 3 --k-rho-min 0.1,0.3,1 --hold 10,20 --out runs/study-policies
+
+rust:  ## the robot in Rust of docs/wire.md; needs cargo
+	cargo build --locked --manifest-path examples/rust_robot/Cargo.toml
 
 bench: setup
 	for program in bench/*.py; do $(BIN)/python $$program || [ $$? = 77 ] || exit 1; done  # 77: no ns-3 here
