@@ -17,7 +17,7 @@ from typing import Any
 from onehop.contracts import topics
 from onehop.contracts.briefings import LogBriefing
 from onehop.contracts.errors import InputError
-from onehop.contracts.messages import End
+from onehop.contracts.operation import End
 from onehop.node import startup
 from onehop.node.bus import GONE, Bus
 from onehop.scenario.bundle import bundle_from_json

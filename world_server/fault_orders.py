@@ -10,7 +10,7 @@ from functools import partial
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.fault_section import FaultSection
-from onehop.contracts.messages import FaultAnswer, FaultOrder
+from onehop.contracts.operation import FaultAnswer, FaultOrder
 from onehop.node.bus import Bus
 from onehop.wire.codec import decode, encode
 from world_server.core.world import World

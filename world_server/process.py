@@ -8,7 +8,7 @@ from pathlib import Path
 
 from onehop.contracts import topics
 from onehop.contracts.arrays import FloatArray
-from onehop.contracts.messages import End
+from onehop.contracts.operation import End
 from onehop.maps.map_file import load_map
 from onehop.node import startup
 from onehop.node.bus import Bus, open_router

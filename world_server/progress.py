@@ -5,7 +5,8 @@ from collections.abc import Mapping
 
 from onehop.contracts import topics
 from onehop.contracts.fault_section import fault_in_words
-from onehop.contracts.messages import Action, Progress, RobotProgress, Truth
+from onehop.contracts.messages import Action, Truth
+from onehop.contracts.operation import Progress, RobotProgress
 from onehop.node.bus import Bus
 from onehop.wire.codec import encode
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Set
 from functools import partial
 
 from onehop.contracts import topics
-from onehop.contracts.messages import Death
+from onehop.contracts.operation import Death
 from onehop.node.bus import ALIVE
 from onehop.wire.codec import decode
 from world_server.mailbox import Mailbox, MissionBrokenError

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from onehop.contracts.fault_section import fault_in_words
-from onehop.contracts.messages import Action, Carriage, Progress, RobotProgress
+from onehop.contracts.messages import Action, Carriage
+from onehop.contracts.operation import Progress, RobotProgress
 from onehop.contracts.topics import robot_name
 from onehop.drivers import inline
 from onehop.mission.stops import Stopped, StopRequest

@@ -6,7 +6,7 @@ import time
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError, MissionError
 from onehop.contracts.fault_section import FaultSection
-from onehop.contracts.messages import FaultAnswer, FaultOrder
+from onehop.contracts.operation import FaultAnswer, FaultOrder
 from onehop.mission.rendezvous import Rendezvous
 from onehop.node.bus import GONE, Bus, open_client
 from onehop.wire.codec import decode, encode

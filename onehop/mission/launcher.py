@@ -12,7 +12,7 @@ from typing import Any
 
 from onehop.contracts import topics
 from onehop.contracts.errors import InputError, MissionError
-from onehop.contracts.messages import Progress
+from onehop.contracts.operation import Progress
 from onehop.mission.operator import LOST_WORD, STOPPED, Ending, OperatorSession, aborted, ending_by_death
 from onehop.mission.processes import ProcessGroup, free_endpoint
 from onehop.mission.rendezvous import Rendezvous, published

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
-from onehop.contracts.messages import Death, End, Outcome, Progress
+from onehop.contracts.messages import Outcome
+from onehop.contracts.operation import Death, End, Progress
 from onehop.mission.processes import ProcessGroup
 from onehop.mission.stops import StopRequest
 from onehop.node.bus import ALIVE, Bus

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from onehop.contracts import topics
 from onehop.contracts.errors import InputError
-from onehop.contracts.messages import Death
+from onehop.contracts.operation import Death
 from onehop.contracts.printable import printable
 from onehop.node.bus import make_credentials
 from onehop.node.startup import (

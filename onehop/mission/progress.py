@@ -12,7 +12,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from onehop.contracts.messages import Progress
+from onehop.contracts.operation import Progress
 from onehop.contracts.scenario import Scenario
 
 PLAIN_S = 5.0

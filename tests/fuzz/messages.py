@@ -21,22 +21,19 @@ from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import (
     Action,
     Cut,
-    Death,
-    End,
     Inbox,
     Jam,
     Observation,
     Outcome,
     Percept,
     Presence,
-    Progress,
     RadioRecord,
     Reception,
-    RobotProgress,
     Transmission,
     TransmitRequest,
     Truth,
 )  # fmt: skip
+from onehop.contracts.operation import Death, End, Progress, RobotProgress
 from onehop.contracts.values import Wire
 from onehop.maps.map_file import load_map
 from onehop.programs.host import Host

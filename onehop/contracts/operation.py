@@ -1,0 +1,63 @@
+"""What world, operator and injector tell each other. Each is the content of one bus key (topics.py)."""
+
+from onehop.contracts.fault_section import FaultSection
+from onehop.contracts.messages import Outcome
+from onehop.contracts.team import Status
+from onehop.contracts.values import Value, Wire
+
+
+class End(Wire, frozen=True):
+    """World to all: the mission is over (key end). last_tick: the last one that is recorded.
+
+    wall_s: wall-clock time of the ticks; it is for people and stays out of the log.
+    """
+
+    outcome: Outcome
+    last_tick: int
+    wall_s: float
+
+
+class Death(Wire, frozen=True):
+    """Operator to world (key died): a process has ended by a signal or with an error.
+
+    incarnation: how often it had been started again. account: how it ended, and its last words.
+    """
+
+    name: str
+    incarnation: int
+    account: str
+
+
+class FaultOrder(Wire, frozen=True):
+    """Injector to world (key fault): carry out a fault with the next tick.
+
+    number: of this order, by which its answer is known; an order that is repeated counts once.
+    """
+
+    number: int
+    fault: FaultSection
+
+
+class FaultAnswer(Wire, frozen=True):
+    """World to injector (key answer). tick: whose truth shows the fault; refusal: why none does."""
+
+    number: int
+    tick: int
+    refusal: str
+    fault: FaultSection
+
+
+class RobotProgress(Value, frozen=True):
+    """One line of the progress display; speed [m/s]."""
+
+    robot: int
+    speed: float
+    status: Status | None
+
+
+class Progress(Wire, frozen=True):
+    """World to operator, a few times a second (key progress): how far the mission is."""
+
+    tick: int
+    time_ns: int
+    robots: tuple[RobotProgress, ...]
