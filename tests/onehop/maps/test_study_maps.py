@@ -79,7 +79,8 @@ def test_six_robots_can_start_there_with_any_seed(name: str) -> None:
     scenario, walls = read(name), walls_of(name)
     for seed in range(20):
         poses = start_poses(
-            Scenario(scenario.name, scenario.goal, scenario.map, scenario.start, seed), walls
+            Scenario(scenario.name, scenario.goal, scenario.map, start=scenario.start, seed=seed),
+            walls,
         )
         assert len(poses) == 6
 
