@@ -2,7 +2,6 @@
 
 import ast
 import json
-import shutil
 import subprocess
 import sys
 import tomllib
@@ -21,7 +20,6 @@ pytestmark = pytest.mark.live
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SIMPLE = EXAMPLES / "simple.toml"
 BARE = '["python", "bare_robot.py"]'
-BUILD_S = 1800.0
 
 FAULTS = """faults=[
     {kind="stop", at_s=2.0, robots=[5], duration_s=1.0},
@@ -96,19 +94,10 @@ def test_they_know_nothing_of_onehop() -> None:
 
 
 def test_a_robot_in_rust_takes_the_place_of_a_program(digest: str, tmp_path: Path) -> None:
-    if shutil.which("cargo") is None:
-        pytest.skip("no cargo here: rustup installs it")
-    manifest = EXAMPLES / "rust_robot" / "Cargo.toml"
-    wanted = tomllib.loads(manifest.read_text())["package"]["rust-version"]
-    said = subprocess.run(["cargo", "--version"], capture_output=True, text=True, check=True).stdout
-    if tuple(map(int, said.split()[1].split(".")[:2])) < tuple(map(int, wanted.split("."))):
-        pytest.skip(f"{said.strip()} is here, {wanted} is needed: rustup installs it")
-    package = ("--locked", "--manifest-path", str(manifest))
-    fetched = subprocess.run(["cargo", "fetch", *package], capture_output=True, text=True, check=False)
-    if fetched.returncode:
-        pytest.skip(f"its crates cannot be had: {fetched.stderr.strip().splitlines()[-1]}")
+    if not (EXAMPLES / "rust_robot" / "target" / "debug" / "rust_robot").exists():
+        pytest.skip("the robot in Rust is not built: make rust, with cargo; it takes minutes")
     built = subprocess.run(
-        ["cargo", "build", *package], capture_output=True, text=True, check=False, timeout=BUILD_S
+        ["make", "rust"], cwd=EXAMPLES.parent, capture_output=True, text=True, check=False
     )
     assert built.returncode == 0, built.stderr
     assert "warning" not in built.stderr
