@@ -35,7 +35,7 @@ slow: setup
 	$(BIN)/pytest -q -n auto --dist loadscope -m 'slow and not live and not campaign'
 
 live: setup
-	$(BIN)/pytest -q -m 'live and not campaign'
+	$(BIN)/pytest -q -n 2 --dist loadfile -m 'live and not campaign'
 
 lowest: $(LOWEST_STAMP)  ## the fast tests with the lowest Python and the lowest versions that are promised
 	NUMBA_CACHE_DIR=$(LOWEST)/compiled $(LOWEST)/bin/pytest -q -m 'not slow and not live'
