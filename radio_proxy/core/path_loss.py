@@ -145,12 +145,13 @@ class HeldToRange:
                 f"radio.propagation gave {len(row)} values for {len(self._places)} stations"
             )
         return [
-            SILENT_DB if place is None or value != value else _held(float(value))
+            SILENT_DB if place is None or value != value else held(float(value))
             for value, place in zip(row, self._places, strict=True)
         ]
 
 
-def _held(snr_db: float) -> float:
+def held(snr_db: float) -> float:
+    """An SNR between two robots as the radio can carry it: from silence to below its own emission."""
     return min(max(snr_db, SILENT_DB), OWN_DB - 1.0)
 
 

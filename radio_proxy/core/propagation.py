@@ -13,7 +13,7 @@ from radio_proxy.core.airtime import delay_ns
 from radio_proxy.core.fast_fading import FastFading
 from radio_proxy.core.link_budget import LinkBudget
 from radio_proxy.core.measured_links import MeasuredLinks
-from radio_proxy.core.path_loss import OWN_DB, SILENT_DB, LogDistance, PropagationModel, Wall
+from radio_proxy.core.path_loss import OWN_DB, SILENT_DB, LogDistance, PropagationModel, Wall, held
 from radio_proxy.core.shadowing import Shadowing
 
 
@@ -188,13 +188,13 @@ class Propagation:
             for robot, snr_db in self._measured.snr_db(self._robots[sender], self._tick[1]).items():
                 other = self._index[robot]
                 if snr_db is not None and other in self._positions:
-                    row[other] = snr_db
+                    row[other] = held(snr_db)
         else:
             row = self._model.row_db(sender)
             for robot, loss_db in self._measured.loss_db(self._robots[sender], self._tick[1]).items():
                 other = self._index[robot]
                 if row[other] > SILENT_DB:
-                    row[other] = SILENT_DB if loss_db is None else row[other] - loss_db
+                    row[other] = SILENT_DB if loss_db is None else held(row[other] - loss_db)
         row[sender] = OWN_DB
         self._apply_cuts(sender, row)
         return row

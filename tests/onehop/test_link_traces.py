@@ -23,6 +23,7 @@ from onehop.scenario.link_trace import link_trace, parse
 from onehop.wire.log_reader import LogFile
 from radio_proxy.core.link_budget import link_budget
 from radio_proxy.core.measured_links import MeasuredLinks, value_at
+from radio_proxy.core.path_loss import OWN_DB
 from tests.onehop.forgery import Forgery
 from tests.onehop.scenes import field, log_of
 
@@ -154,6 +155,21 @@ def test_every_frame_has_the_snr_that_was_measured_and_who_has_no_link_hears_not
     assert (4, 1) not in set(verdicts.where(direct & reached).rows("source", "receiver"))
     assert replay(LogFile(log.path)).same
     assert judge(LogFile(log.path)).holds
+
+
+@pytest.mark.parametrize(
+    ("quantity", "value", "use"),
+    [("rssi_dbm", 150.0, "instead"), ("loss_db", -150.0, "instead"), ("loss_db", -150.0, "on top")],
+)
+def test_no_link_is_as_strong_as_an_emission_of_its_own(
+    tmp_path: Path, quantity: str, value: float, use: str
+) -> None:
+    how = f"radio.links_use='{use}'"
+    log_of(trial(tmp_path, everyone(quantity, value), how, "clock.limit_s=1"), tmp_path / "m.mcap")
+    verdicts = open_log(tmp_path / "m.mcap").table("verdicts")
+    assert len(verdicts)
+    assert set(verdicts["status"].tolist()) == {"delivered"}
+    assert verdicts["snr_db"].max() < OWN_DB
 
 
 def test_on_top_of_the_model_a_loss_weakens_what_it_says(tmp_path: Path) -> None:
