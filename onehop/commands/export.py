@@ -6,6 +6,7 @@ from onehop.analysis.ros2.bag import write_bag
 from onehop.analysis.table_files import write_csv, write_parquet
 from onehop.commands.logs import open_with_warning, warn_of_flaws
 from onehop.commands.output import emit_json
+from onehop.wire.audit import audit
 
 
 def export(path: Path, to: str, out: Path, as_json: bool) -> int:
@@ -16,7 +17,8 @@ def export(path: Path, to: str, out: Path, as_json: bool) -> int:
         what = f"{sum(counts.values())} messages on {len(counts)} topics"
         use = f"ros2 bag info {out}"
     else:
-        counts, flaws = (write_csv if to == "csv" else write_parquet)(log, out), []
+        counts = (write_csv if to == "csv" else write_parquet)(log, out)
+        flaws = audit(log.file)  # tables pass over what is missing
         what = f"{sum(counts.values())} rows in {len(counts)} tables"
         use = ""
     if as_json:

@@ -12,6 +12,8 @@ from onehop.analysis import Log
 from onehop.analysis.columns import TABLES
 from onehop.analysis.table_files import write_csv, write_parquet
 from onehop.contracts.errors import InputError
+from tests.onehop.log_forms import Form, ticks_of, write_form
+from tests.onehop.test_cli import onehop
 
 
 def test_csv_has_every_row_of_every_table(log: Log, tmp_path: Path) -> None:
@@ -53,3 +55,12 @@ def test_a_folder_that_is_there_is_left_alone(log: Log, tmp_path: Path) -> None:
     with pytest.raises(InputError, match="exists already"):
         write_csv(log, tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_log_with_a_hole_is_told_of(log_path: Path, tmp_path: Path) -> None:
+    ticks = ticks_of(log_path)
+    write_form(log_path, tmp_path / "holed.mcap", Form(), [*ticks[:30], *ticks[60:]])
+    done = onehop("export", tmp_path / "holed.mcap", "--to", "csv", "-o", tmp_path / "csv")
+    assert done.returncode == 1
+    assert "missing" in done.stderr
+    assert (tmp_path / "csv" / "poses.csv").exists()
