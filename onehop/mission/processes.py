@@ -16,7 +16,7 @@ from onehop.contracts import topics
 from onehop.contracts.errors import InputError
 from onehop.contracts.operation import Death
 from onehop.contracts.printable import printable
-from onehop.node.bus import make_credentials
+from onehop.node.identity import make_credentials
 from onehop.node.startup import (
     CREDENTIALS_VARIABLE,
     PASSWORD_VARIABLE,
@@ -93,8 +93,7 @@ class ProcessGroup:
         self._programs = programs
         self._search = ["--programs", programs] if programs else []
         self._commands = commands
-        others = (topics.RADIO, topics.RECORDER, topics.OPERATOR, topics.INJECTOR)
-        names = [*others, *map(topics.robot_name, robots)]
+        names = topics.clients(robots)
         require_descriptors(len(names))
         self._passwords = make_credentials(names)
         self._lifeline, self._keep_open = os.pipe()
