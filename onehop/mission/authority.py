@@ -1,8 +1,8 @@
 """A small certificate authority of one's own: `onehop keys` makes one for a team, with all certificates.
 
-Everyone's key is made here and nowhere sent: who copies a folder to another host copies one identity. There
-is no list of revoked certificates, since Zenoh reads none: an identity that was stolen is good until it
-expires, and what ends it at once is a new authority.
+Everyone's key is made here and sent nowhere: who copies a folder to another host copies one identity.
+There is no list of revoked certificates, since Zenoh reads none: an identity that was stolen is good
+until it expires, and what ends it at once is a new authority.
 """
 
 import datetime

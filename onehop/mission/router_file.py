@@ -17,7 +17,7 @@ FILE = "zenohd.json5"
 
 HEAD = """\
 // The router of a mission, made by onehop keys: in this folder, zenohd --config zenohd.json5
-// World and everyone else are its clients; each may say and hear what its row in the table of rights says.
+// The world and everyone else are its clients; each may say and hear what the table of rights gives it.
 """
 
 

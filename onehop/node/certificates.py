@@ -1,8 +1,8 @@
 """The certificate of one process, as `onehop keys` makes it: found, checked, and told to Zenoh.
 
-A folder of keys has a folder for each process, with all that this process needs and nothing else, so that
-it can be copied to another host by itself. Zenoh says no more than "timeout" about a certificate that is
-refused, so what a host can see of its own is looked at before.
+A folder of keys has a folder for each process, with all that this process needs and nothing else, so
+that it can be copied to another host by itself. Zenoh says no more than "timeout" about a certificate
+that is refused, so what a host can see of its own is looked at before.
 """
 
 import datetime

@@ -1,4 +1,4 @@
-"""Who a process is on the bus: a password that its launcher made for it, or a certificate of `onehop keys`.
+"""Who a process is on the bus: a password that its launcher made, or a certificate of `onehop keys`.
 
 Either goes with one session id, so that a name cannot be used twice at once. That of a password is a
 secret like the password; that of a certificate is not, and the gate compares it with the certificate.

@@ -23,8 +23,8 @@ DEFAULT_MISSION = "onehop"
 """Prefix of a mission's keys where nobody gives one: several hosts need not be told."""
 
 PASSWORD_VARIABLE = "ONEHOP_PASSWORD"
-"""Environment variable with a process's password; an argument would show in ps. Programs that it starts do
-not inherit it."""
+"""Environment variable with a process's password; an argument would show in ps. What the process starts
+does not inherit it."""
 
 CREDENTIALS_VARIABLE = "ONEHOP_CREDENTIALS"
 """Environment variable of the world: all names and passwords, as name:password words."""
