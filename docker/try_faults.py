@@ -5,6 +5,7 @@ for longer than its lease, one cut from the network. The image is there (docker/
 """
 
 import json
+import os
 import subprocess
 import sys
 import time
@@ -70,7 +71,7 @@ def disturb() -> None:
     docker("kill", container("robot-3"))
     docker("restart", "--time", "0", container("robot-4"))
     docker("pause", container("robot-5"))
-    docker("network", "disconnect", f"{PROJECT}_bus", container("robot-6"))
+    docker("network", "disconnect", f"{PROJECT}_robot-6", container("robot-6"))
     time.sleep(2.0 * LEASE_S)
     docker("unpause", container("robot-5"))
 
@@ -103,6 +104,10 @@ def findings() -> list[str]:
 def main() -> int:
     log, summary = OUT / "mission.mcap", OUT / "summary.json"
     OUT.mkdir(parents=True, exist_ok=True)
+    if os.geteuid() == 0:  # nothing runs as root
+        os.chown(OUT, 1000, 1000)
+    else:
+        os.environ["ONEHOP_UID"] = str(os.getuid())
     log.unlink(missing_ok=True)
     summary.unlink(missing_ok=True)
     try:
