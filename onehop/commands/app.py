@@ -34,6 +34,11 @@ class Preset(StrEnum):
     INDOOR = "indoor"
 
 
+class Router(StrEnum):
+    WORLD = "world"
+    EXTERNAL = "external"
+
+
 class FastFading(StrEnum):
     NONE = "none"
     RAYLEIGH = "rayleigh"
@@ -89,6 +94,9 @@ def run(
     wait_s: Annotated[
         float, Option("--wait", help="How long for other hosts [s].", callback=within(numbers.WAIT))
     ] = 300.0,
+    router: Annotated[
+        Router, Option(help="Of --bus: the world, or one that runs there (zenohd).")
+    ] = Router.WORLD,
     record: Annotated[bool, Option("--record/--no-record", help="Write the log.")] = True,
     with_view: Annotated[
         bool, Option("--view/--no-view", help="Add to the log what Foxglove and Rerun show.")
@@ -105,7 +113,7 @@ def run(
 
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
-    hosts = command.Hosts(bus, keys, remote, mission, wait_s)
+    hosts = command.Hosts(bus, keys, remote, mission, wait_s, router.value)
     leave(command.run(scenario, driver.value, settings, seed, *places, *wanted, program, hosts))
 
 

@@ -26,6 +26,7 @@ class Hosts:
     remote: str = ""
     mission: str = DEFAULT_MISSION
     wait_s: float = WAIT_S
+    router: str = "world"
 
 
 def run(
@@ -96,7 +97,8 @@ def _placed(hosts: Hosts, driver: str, bundle: Bundle) -> Placement | None:
     if hosts.bus is None:
         raise InputError("--bus", "missing", "where the world is to listen, e.g. tls/10.0.0.1:7447")
     robots = bundle.scenario.team.robots
-    return on_hosts(hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s, robots)
+    external = hosts.router == "external"
+    return on_hosts(hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s, robots, external)
 
 
 def _fresh_folder(bundle: Bundle) -> Path:

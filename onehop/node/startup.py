@@ -87,8 +87,13 @@ def connect(options: argparse.Namespace, name: str) -> Bus:
     return open_client(options.mission, options.connect, name, identity)
 
 
-def listen(options: argparse.Namespace, names: Iterable[str]) -> Bus:
-    """Open the world's session, the router's. names: who may come, if they have certificates."""
+def host(options: argparse.Namespace, names: Iterable[str]) -> Bus:
+    """Open the world's session, the router's or that of a router's client.
+
+    names: who may come, if they have certificates.
+    """
+    if options.connect is not None:
+        return connect(options, topics.WORLD)
     if require_keys_for_tls(options.listen, options.keys):
         own = certificate(options.keys, topics.WORLD)
         return open_certified_router(options.mission, options.listen, own, names)
