@@ -20,8 +20,11 @@ import zenoh
 
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.messages import Truth
+from onehop.mission import authority
 from onehop.mission.injection import inject
 from onehop.mission.rendezvous import way_into
+from onehop.mission.router_file import write_router_file
+from onehop.node.certificates import own_certificate
 from onehop.wire.codec import decode
 from tests.live.hosts import LINK, ended, hosts, made_keys, stranger, tls_endpoint
 from tests.live.mission import DEADLINE_S, Mission, gone, proven
@@ -141,6 +144,43 @@ def test_a_mission_logs_the_same_bytes_whatever_rogue_clients_do(tmp_path: Path,
             summary = mission.finish()
     assert summary["digest"] == inline
     assert {lost["why"] for lost in summary["lost"]} == {"did not arrive"}
+
+
+ROUTER = """
+import sys, zenoh
+with zenoh.open(zenoh.Config.from_file(sys.argv[1])):
+    print("open", flush=True)
+    sys.stdin.read()
+"""
+
+
+@contextlib.contextmanager
+def router(keys: Path, endpoint: str) -> Iterator[None]:
+    """A router that has its configuration from `onehop keys`, as zenohd would, at an endpoint."""
+    names = authority.names_of(range(1, 7))
+    path = write_router_file(own_certificate(keys, authority.ROUTER), "onehop", names)
+    path.write_text(path.read_text().replace("tls/[::]:7447", endpoint))
+    child = subprocess.Popen(
+        [sys.executable, "-c", ROUTER, path.name],
+        cwd=path.parent,
+        text=True,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+    )
+    with ended(child):
+        assert child.stdout is not None
+        assert child.stdout.readline() == "open\n"
+        yield
+
+
+def test_with_a_router_of_its_own_the_bytes_are_the_same(tmp_path: Path, keys: Path) -> None:
+    """Twice, since the router is there before the world is, and after it."""
+    inline = log_of(field(tmp_path, *SHORT), tmp_path / "inline.mcap")
+    endpoint = tls_endpoint()
+    options = ("--bus", endpoint, "--keys", str(keys), "--router", "external")
+    with router(keys, endpoint):
+        digests = [Mission(tmp_path, *SHORT, options=options).finish()["digest"] for _ in range(2)]
+    assert digests == [inline] * 2
 
 
 @pytest.fixture
