@@ -10,7 +10,7 @@ from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import FIGURE, REMEDY, claimed, explained
-from onehop.wire.summary import summary_file
+from onehop.wire.summary import summary_file, write_summary
 
 
 def run(
@@ -56,6 +56,9 @@ def run(
                 arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
                 plan = launcher.plan(bundle, arguments, folder, claim, record)
                 summary = launcher.run(plan, display.show, display.tell)
+        if summary["log"] is not None:
+            summary["energy"] = _energy(Path(summary["log"]))
+            write_summary(folder, summary)
         if as_json:
             emit_json(summary)
         else:
@@ -80,6 +83,20 @@ def _fresh_folder(bundle: Bundle) -> Path:
             except FileExistsError:
                 number += 1
                 folder = Path("runs") / f"{stem}-{number}"
+
+
+def _energy(log: Path) -> list[dict[str, Any]]:
+    """What each robot has spent, driving and in its card [J], from the first tick to the last."""
+    from onehop.analysis.log import open_log
+
+    spent = open_log(log).table("energy")
+    robots = sorted(set(spent["robot"].tolist()))
+    kinds = ("drive_j", "radio_j")
+    of = {robot: spent.of(robot) for robot in robots}
+    return [
+        {"robot": robot, **{kind: round(float(of[robot][kind].sum()), 1) for kind in kinds}}
+        for robot in robots
+    ]
 
 
 def _add_pictures(log: Path, with_view: bool) -> Path:
@@ -123,6 +140,11 @@ def _print(summary: dict[str, Any], folder: Path) -> None:
         f"{summary['ticks_per_s']:.0f} a second, {summary['real_time_factor']:.1f}x real time"
     )
     console.print(f"collisions  {summary['collisions']}")
+    if "energy" in summary:
+        driving, cards = (
+            sum(entry[kind] for entry in summary["energy"]) / 1000.0 for kind in ("drive_j", "radio_j")
+        )
+        console.print(f"energy      {driving:.1f} kJ for driving, {cards:.1f} kJ for the radio cards")
     console.print(f"digest      {summary['digest'] or 'none: the recorder did not finish'}")
     console.print(f"log         {summary['log'] or 'none'}")
     console.print(f"summary     {summary_file(folder)}")

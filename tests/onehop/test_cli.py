@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
+from onehop.analysis.log import open_log
 from onehop.wire.log_reader import LogFile, digest
 from tests.onehop.scenes import FIELD, field, log_of
 
@@ -102,8 +103,12 @@ def test_an_inline_run_gives_the_promised_keys_and_files(tmp_path: Path) -> None
     assert summary["outcome"] == "arrived"
     assert set(summary) == {
         "outcome", "reason", "arrived", "lost", "leaders", "ticks", "sim_s", "wall_s", "ticks_per_s",
-        "real_time_factor", "processes", "digest", "log", "collisions",
+        "real_time_factor", "processes", "digest", "log", "collisions", "energy",
     }  # fmt: skip
+    assert [entry["robot"] for entry in summary["energy"]] == [1, 2, 3, 4]
+    spent = open_log(tmp_path / "here" / "mission.mcap").table("energy").of(2)
+    assert summary["energy"][1]["drive_j"] == pytest.approx(spent["drive_j"].sum(), abs=0.1)
+    assert summary["energy"][1]["radio_j"] == pytest.approx(spent["radio_j"].sum(), abs=0.1)
     assert summary["processes"] == []
     assert json.loads((tmp_path / "here" / "summary.json").read_text()) == summary
     assert (tmp_path / "here" / "trajectory.png").stat().st_size > 10_000
