@@ -78,6 +78,17 @@ def run(
         Option(metavar="MODULE:CLASS", help="Program of all robots without one of their own."),
     ] = None,
     out: Annotated[Path | None, Option(help="Folder for log, summary and figure.")] = None,
+    bus: Annotated[
+        str | None, Option(metavar="tls/HOST:PORT", help="Where the world listens for other hosts.")
+    ] = None,
+    keys: Annotated[Path | None, Option(metavar="DIR", help="Certificates, of onehop keys.")] = None,
+    remote: Annotated[
+        str, Option(metavar="3,4[,radio]", help="Who is started on other hosts, and waited for.")
+    ] = "",
+    mission: Annotated[str, Option(help="Prefix of its keys on a bus that others reach.")] = "onehop",
+    wait_s: Annotated[
+        float, Option("--wait", help="How long for other hosts [s].", callback=within(numbers.WAIT))
+    ] = 300.0,
     record: Annotated[bool, Option("--record/--no-record", help="Write the log.")] = True,
     with_view: Annotated[
         bool, Option("--view/--no-view", help="Add to the log what Foxglove and Rerun show.")
@@ -94,7 +105,8 @@ def run(
 
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
-    leave(command.run(scenario, driver.value, settings, seed, *places, *wanted, program))
+    hosts = command.Hosts(bus, keys, remote, mission, wait_s)
+    leave(command.run(scenario, driver.value, settings, seed, *places, *wanted, program, hosts))
 
 
 @app.command()

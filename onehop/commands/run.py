@@ -1,16 +1,31 @@
 """`onehop run`: a mission from its scenario to its outcome, with a log, a summary and a figure."""
 
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from onehop.commands.output import emit_json, say, stdout, table
+from onehop.contracts.errors import InputError
+from onehop.mission.placement import WAIT_S, Placement, on_hosts
 from onehop.mission.progress import Display
+from onehop.node.startup import DEFAULT_MISSION
 from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import FIGURE, REMEDY, claimed, explained
 from onehop.wire.summary import summary_file, write_summary
+
+
+@dataclass(frozen=True, slots=True)
+class Hosts:
+    """Options of a mission on several hosts, as they are typed; see placement.on_hosts."""
+
+    bus: str | None = None
+    keys: Path | None = None
+    remote: str = ""
+    mission: str = DEFAULT_MISSION
+    wait_s: float = WAIT_S
 
 
 def run(
@@ -26,8 +41,12 @@ def run(
     with_view: bool,
     as_json: bool,
     program: str | None = None,
+    hosts: Hosts | None = None,
 ) -> int:
-    """Run one mission; returns the exit status. program: of the team, in place of the scenario's."""
+    """Run one mission; returns the exit status.
+
+    program: of the team, in place of the scenario's. hosts: the bus of a mission on several hosts.
+    """
     if program is not None:
         settings = [*settings, f"team.program={program}"]
     bundle = scenario_file.load(
@@ -40,6 +59,7 @@ def run(
     )
     search_in(bundle.folder)
     check(bundle.scenario, str(scenario))
+    placement = None if hosts is None else _placed(hosts, driver, bundle)
     if driver == "inline":
         require_programs(bundle.scenario, str(scenario))
     folder = out or _fresh_folder(bundle)
@@ -54,7 +74,7 @@ def run(
                 from onehop.mission import launcher
 
                 arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
-                plan = launcher.plan(bundle, arguments, folder, claim, record)
+                plan = launcher.plan(bundle, arguments, folder, claim, record, placement)
                 summary = launcher.run(plan, display.show, display.tell)
         if summary["log"] is not None:
             summary["energy"] = _energy(Path(summary["log"]))
@@ -68,6 +88,18 @@ def run(
             if not as_json:
                 print(f"figure      {figure}")
     return 0 if summary["outcome"] == "arrived" else 1
+
+
+def _placed(hosts: Hosts, driver: str, bundle: Bundle) -> Placement | None:
+    """Where the mission's processes are to run. Raises InputError."""
+    if hosts == Hosts():
+        return None
+    if driver == "inline":
+        raise InputError("--driver inline", "has no bus", "leave --bus, --keys and --remote out")
+    if hosts.bus is None:
+        raise InputError("--bus", "missing", "where the world is to listen, e.g. tls/10.0.0.1:7447")
+    robots = bundle.scenario.team.robots
+    return on_hosts(hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s, robots)
 
 
 def _fresh_folder(bundle: Bundle) -> Path:
