@@ -1,10 +1,12 @@
 """`onehop run`: a mission from its scenario to its outcome, with a log, a summary and a figure."""
 
+import contextlib
 import time
 from pathlib import Path
 from typing import Any
 
 from onehop.commands.output import emit_json, say, stdout, table
+from onehop.contracts.errors import InputError
 from onehop.mission.progress import Display
 from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
@@ -26,8 +28,15 @@ def run(
     with_view: bool,
     as_json: bool,
     program: str | None = None,
+    live: str | None = None,
+    browser: bool = True,
 ) -> int:
-    """Run one mission; returns the exit status. program: of the team, in place of the scenario's."""
+    """Run one mission; returns the exit status. program: of the team, in place of the scenario's.
+
+    live: where the live page is served (guard.parse_address). browser: open it, if there is a screen.
+    """
+    if live is not None:
+        _require_what_is_shown(driver, record)
     if program is not None:
         settings = [*settings, f"team.program={program}"]
     bundle = scenario_file.load(
@@ -43,7 +52,14 @@ def run(
     if driver == "inline":
         require_programs(bundle.scenario, str(scenario))
     folder = out or _fresh_folder(bundle)
-    with claimed(folder) as claim:
+    with contextlib.ExitStack() as page, claimed(folder) as claim:
+        shown = None
+        if live is not None:
+            from onehop.commands.live import live_page, words_of
+
+            places = (("--map", map_file), ("--start", start), ("--goal", goal))
+            words = words_of(scenario, settings, bundle.scenario.seed, places)
+            shown = page.enter_context(live_page(live, browser, folder, words))
         with Display(bundle.scenario) as display:
             if driver == "inline":
                 from onehop.commands.inline_run import run_inline
@@ -55,7 +71,8 @@ def run(
 
                 arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
                 plan = launcher.plan(bundle, arguments, folder, claim, record)
-                summary = launcher.run(plan, display.show, display.tell)
+                attend = launcher.nobody if shown is None else shown.attend
+                summary = launcher.run(plan, display.show, display.tell, attend)
         if as_json:
             emit_json(summary)
         else:
@@ -64,7 +81,17 @@ def run(
             figure = _add_pictures(Path(summary["log"]), with_view)
             if not as_json:
                 print(f"figure      {figure}")
+        if shown is not None:
+            shown.stay(summary)
     return 0 if summary["outcome"] == "arrived" else 1
+
+
+def _require_what_is_shown(driver: str, record: bool) -> None:
+    """Raises InputError."""
+    if driver == "inline":
+        raise InputError("--live", "a mission in one process has no page", "--driver processes")
+    if not record:
+        raise InputError("--live", "it shows the log as it is written", "leave out --no-record")
 
 
 def _fresh_folder(bundle: Bundle) -> Path:

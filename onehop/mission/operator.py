@@ -96,6 +96,7 @@ class OperatorSession:
         self._gone_s = math.inf
         self._stop_told = False
         self._control = bus.publisher(topics.by(topics.OPERATOR, topics.CONTROL))
+        self._pace = bus.publisher(topics.by(topics.OPERATOR, topics.PACE))
         self._report = bus.publisher(topics.by(topics.OPERATOR, topics.DIED))
         bus.watch(topics.WORLD)
 
@@ -138,6 +139,8 @@ class OperatorSession:
             self._show(progress)
         elif what == topics.TOLD:
             self._tell(data.decode())
+        elif what == topics.PACE:
+            self._pace(data)
         elif what == topics.RESTART:
             self._group.start_robot(int(data))
         elif what in SIGNALS:
