@@ -3,11 +3,13 @@
 from collections.abc import Iterator, Mapping
 
 from onehop.contracts.messages import Action, Truth
-from onehop.contracts.printable import ids_in_words
 from onehop.contracts.team import Mode
 
 MOST_SENTENCES = 5
 """Sentences that are read at a glance."""
+
+MOST_NAMED = 12
+"""Robots of one sentence that are named; of more it is told how many they are."""
 
 _DOING = {
     Mode.LOST_LEADER: (
@@ -93,5 +95,7 @@ def _faults(truth: Truth) -> Iterator[str]:
 
 
 def _robots(robots: list[int] | tuple[int, ...], begins: bool = False) -> str:
+    if len(robots) > MOST_NAMED:
+        return f"{len(robots)} robots"
     word = "Robot" if begins else "robot"
-    return f"{word}{'s' if len(robots) > 1 else ''} {ids_in_words(robots)}"
+    return f"{word}{'s' if len(robots) > 1 else ''} {' '.join(map(str, robots))}"

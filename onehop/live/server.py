@@ -17,6 +17,7 @@ from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
+from onehop.contracts.printable import printable
 from onehop.live.first_difference import FirstDifference
 from onehop.live.guard import HEADERS, Address, Guard, bind, content_policy
 from onehop.live.hand import Hand
@@ -138,8 +139,9 @@ class LiveServer:
             await socket.close()  # before it is accepted: the answer is 403
             return
         await socket.accept()
-        await socket.send_json({"kind": "hello", "logs": len(self._sources), "log": number})
         source = self._sources[number]
+        name = printable(str(source.path))
+        await socket.send_json({"kind": "hello", "logs": len(self._sources), "name": name})
         await Viewer(socket, source, self._watchers, self._hand, self._difference).serve()
 
 

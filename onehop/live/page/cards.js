@@ -99,8 +99,8 @@ export class Cards {
       return;
     }
     const values = Object.entries(robot.values || {}).slice(0, 2);
-    put(card.facts.link, leads ? `${status.shape} of ${status.members.length}` : values[0] ? named(values[0]) : "");
-    put(card.facts.gain, leads ? `${robot.speed.toFixed(1)} m/s` : values[1] ? named(values[1]) : "");
+    put(card.facts.link, leads ? status.shape : values[0] ? named(values[0]) : "");
+    put(card.facts.gain, leads ? "" : values[1] ? named(values[1]) : "");
     put(card.facts.error, leads && status.error !== null ? `${status.error.toFixed(0)} m to go` : "");
     card.facts.link.className = "";
   }

@@ -9,7 +9,7 @@ const RATE_MS = 1000;
 
 const views = [];
 const playback = new Playback();
-const measured = { frames: 0, since: performance.now(), tick: -1 };
+const measured = { frames: 0, spent: 0, since: performance.now(), tick: -1 };
 let logs = 0;
 let pace = FULL_SPEED;
 let marksOf = "";
@@ -175,6 +175,7 @@ function onKey(event) {
 
 function draw(now) {
   requestAnimationFrame(draw);
+  const begun = performance.now();
   playback.advance(now, end());
   for (const view of views) {
     const tick = playback.isNow ? -1 : Math.round(playback.time / period());
@@ -183,18 +184,20 @@ function draw(now) {
   }
   showTime();
   measured.frames++;
+  measured.spent += performance.now() - begun;
   if (now - measured.since > RATE_MS) measure(now);
 }
 
-/** How many pictures a second this page draws, and how fast the mission goes. */
+/** How many pictures a second this page draws, what one costs, and how fast the mission goes. */
 function measure(now) {
   const passed = (now - measured.since) / 1000;
   const tick = views[0].frame ? views[0].frame.tick : -1;
   document.documentElement.dataset.fps = (measured.frames / passed).toFixed(1);
+  document.documentElement.dataset.drawMs = (measured.spent / measured.frames).toFixed(2);
   const rate = ((tick - measured.tick) * period()) / passed;
   const moves = measured.tick >= 0 && tick > measured.tick && playback.isNow && views[0].state.state === "running";
   put(byId("rate"), moves ? `${rate < 10 ? rate.toFixed(1) : rate.toFixed(0)}\u00d7 real time` : "");
-  Object.assign(measured, { frames: 0, since: now, tick });
+  Object.assign(measured, { frames: 0, spent: 0, since: now, tick });
 }
 
 function showTime() {

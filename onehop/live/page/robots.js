@@ -1,6 +1,6 @@
 // Robots and what goes on between them: bodies, links, lost messages, slots, paths, what a laser sees.
 
-const FLASH_MS = 600;
+const FLASH_MS = 600, MOST_FLASHES = 80, MANY = 12;
 const TRAIL_SAMPLES = 80;
 
 /** Everything that moves. scene: {frame, places, setting, palette, place, scale, chosen, flashes, samples}. */
@@ -165,9 +165,9 @@ function drawRoutes(pen, { frame, place, places, palette }) {
   pen.globalAlpha = 1;
 }
 
-function drawFlashes(pen, { flashes, now, place, places, palette }) {
+function drawFlashes(pen, { flashes, now, place, places, palette, setting }) {
   pen.strokeStyle = palette.bad;
-  pen.lineWidth = 3;
+  pen.lineWidth = setting.robots.length > MANY ? 1 : 2.6;
   for (const flash of flashes) {
     const age = (now - flash.at) / FLASH_MS;
     const from = places.get(flash.from), to = places.get(flash.to);
@@ -183,7 +183,8 @@ function drawFlashes(pen, { flashes, now, place, places, palette }) {
   pen.globalAlpha = 1;
 }
 
-export const fresh = (flashes, now) => flashes.filter((flash) => now - flash.at < FLASH_MS);
+/** Those of the lost messages that still show. */
+export const fresh = (flashes, now) => flashes.filter((flash) => now - flash.at < FLASH_MS).slice(-MOST_FLASHES);
 
 function drawGone(pen, { place, palette }, gone) {
   const [x, y] = place(gone.x, gone.y);

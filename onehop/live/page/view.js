@@ -54,8 +54,9 @@ export class View {
     this.handTools = [...[...this.toolButtons.values()].slice(1), healing];
     this.lastingLabel = el("label", { title: "How long cut, jam, stop and hold last; empty: until healed" }, "for", lasting, "s");
     const camera = (mode, name) => el("button", { type: "button", onclick: () => (this.camera.mode = mode) }, name);
+    this.cameras = new Map([["team", camera("team", "Team")], ["map", camera("map", "Whole map")]]);
     const tools = el("div", { class: "tools", role: "toolbar", "aria-label": "Map" },
-      el("span", { class: "cameras" }, camera("team", "Team"), camera("map", "Whole map")),
+      el("span", { class: "cameras" }, ...this.cameras.values()),
       ...this.toolButtons.values(), healing, this.lastingLabel);
     this.map = el("div", { class: "map" }, this.canvas, tools, this.hint);
     this.side = el("div", { class: "side" }, this.cards.element, this.events.element,
@@ -88,6 +89,8 @@ export class View {
   /** The line is new: everything comes again. */
   begin(hello) {
     this.logs = hello.logs;
+    put(this.title, hello.name);
+    this.title.hidden = hello.logs < 2;
     this.isFresh = !this.frame;
     this.frame = this.before = null;
     this.charts.samples = [];
@@ -213,6 +216,7 @@ export class View {
   showRest(now) {
     this.cardsDue = now + CARDS_MS;
     const isLog = !this.hand;
+    for (const [mode, button] of this.cameras) button.setAttribute("aria-pressed", String(mode === this.camera.mode));
     for (const button of this.handTools) {
       button.hidden = isLog;
       button.disabled = !this.may;
