@@ -20,6 +20,7 @@ from world_server.core.world import World
 from world_server.fault_orders import FaultOrders
 from world_server.lockstep import LockStep
 from world_server.mailbox import Mailbox, MissionBrokenError
+from world_server.pace import PaceKeeper
 from world_server.process_faults import ProcessFaults
 from world_server.progress import ProgressReports
 from world_server.recording import Recording
@@ -81,14 +82,16 @@ def _host(
     briefings = Briefings(bundle, walls, driver, roll.incarnation)
     open_briefings = partial(bus.answering, topics.config("*"), briefings.answer)
     recording = Recording(bus, mail, silence_s)
+    orders = FaultOrders(bus, mail, robots)
     mission = LockStep(
         world,
         RemoteRadio(bus, mail, silence_s),
         RemoteRobots(bus, mail, roll, robots, silence_s),
         ProcessFaults(bus, mail, roll, robots, open_briefings, silence_s),
-        FaultOrders(bus, mail, robots),
+        orders,
         recording,
         ProgressReports(bus),
+        PaceKeeper(mail, recording, orders),
     )
     _heed_stops(bus, mail)
     mail.read(topics.RECORDER, topics.FAILED, lambda why: mail.break_off(why.decode(errors="replace")))

@@ -12,6 +12,7 @@ from typer import Argument, Option
 
 from onehop.commands import numbers
 from onehop.commands.numbers import within
+from onehop.commands.optional_address import LIVE, OptionalAddress
 
 app = typer.Typer(
     name="onehop",
@@ -48,6 +49,10 @@ AsJson = Annotated[
     bool, Option("--json", help="Print one JSON object on stdout and nothing else there.")
 ]
 
+Browser = Annotated[
+    bool, Option("--browser/--no-browser", help="Open the page, if there is a screen to open it on.")
+]
+
 
 def leave(status: int) -> NoReturn:
     raise typer.Exit(status)
@@ -60,7 +65,7 @@ def _help(context: typer.Context) -> None:
         leave(2)
 
 
-@app.command()
+@app.command(cls=OptionalAddress)
 def run(
     scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
     driver: Annotated[Driver, Option(help="One process each, or all in one.")] = Driver.PROCESSES,
@@ -94,6 +99,15 @@ def run(
         bool, Option("--view/--no-view", help="Add to the log what Foxglove and Rerun show.")
     ] = True,
     as_json: AsJson = False,
+    live: Annotated[
+        str | None,
+        Option(
+            LIVE,
+            metavar="[HOST:PORT]",
+            help="Watch it, and lay hands on it, in a browser (docs/live.md).",
+        ),
+    ] = None,
+    browser: Browser = True,
 ) -> None:
     """Run a mission: every robot a process on the bus, recorded.
 
@@ -106,7 +120,11 @@ def run(
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
     hosts = command.Hosts(bus, keys, remote, mission, wait_s)
-    leave(command.run(scenario, driver.value, settings, seed, *places, *wanted, program, hosts))
+    given = command.run(
+        scenario, driver.value, settings, seed, *places, *wanted, program, hosts,
+        live=live, browser=browser,
+    )  # fmt: skip
+    leave(given)
 
 
 @app.command()

@@ -1,5 +1,6 @@
 """`onehop run`: a mission from its scenario to its outcome, with a log, a summary and a figure."""
 
+import contextlib
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,11 +43,16 @@ def run(
     as_json: bool,
     program: str | None = None,
     hosts: Hosts | None = None,
+    live: str | None = None,
+    browser: bool = True,
 ) -> int:
     """Run one mission; returns the exit status.
 
     program: of the team, in place of the scenario's. hosts: the bus of a mission on several hosts.
+    live: where the live page is served (guard.parse_address). browser: open it, if there is a screen.
     """
+    if live is not None:
+        _require_what_is_shown(driver, record)
     if program is not None:
         settings = [*settings, f"team.program={program}"]
     bundle = scenario_file.load(
@@ -63,7 +69,14 @@ def run(
     if driver == "inline":
         require_programs(bundle.scenario, str(scenario))
     folder = out or _fresh_folder(bundle)
-    with claimed(folder) as claim:
+    with contextlib.ExitStack() as page, claimed(folder) as claim:
+        shown = None
+        if live is not None:
+            from onehop.commands.live import live_page, words_of
+
+            places = (("--map", map_file), ("--start", start), ("--goal", goal))
+            words = words_of(scenario, settings, bundle.scenario.seed, places)
+            shown = page.enter_context(live_page(live, browser, folder, words))
         with Display(bundle.scenario) as display:
             if driver == "inline":
                 from onehop.commands.inline_run import run_inline
@@ -75,7 +88,8 @@ def run(
 
                 arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
                 plan = launcher.plan(bundle, arguments, folder, claim, record, placement)
-                summary = launcher.run(plan, display.show, display.tell)
+                attend = launcher.nobody if shown is None else shown.attend
+                summary = launcher.run(plan, display.show, display.tell, attend)
         if summary["log"] is not None:
             summary["energy"] = _energy(Path(summary["log"]))
             write_summary(folder, summary)
@@ -87,6 +101,8 @@ def run(
             figure = _add_pictures(Path(summary["log"]), with_view)
             if not as_json:
                 print(f"figure      {figure}")
+        if shown is not None:
+            shown.stay(summary)
     return 0 if summary["outcome"] == "arrived" else 1
 
 
@@ -100,6 +116,14 @@ def _placed(hosts: Hosts, driver: str, bundle: Bundle) -> Placement | None:
         raise InputError("--bus", "missing", "where the world is to listen, e.g. tls/10.0.0.1:7447")
     robots = bundle.scenario.team.robots
     return on_hosts(hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s, robots)
+
+
+def _require_what_is_shown(driver: str, record: bool) -> None:
+    """Raises InputError."""
+    if driver == "inline":
+        raise InputError("--live", "a mission in one process has no page", "--driver processes")
+    if not record:
+        raise InputError("--live", "it shows the log as it is written", "leave out --no-record")
 
 
 def _fresh_folder(bundle: Bundle) -> Path:

@@ -92,6 +92,9 @@ PROGRESS = "progress"
 CONTROL = "control"
 """Operator to world: end the mission now."""
 
+PACE = "pace"
+"""Operator to world: how fast it is to go from tick to tick, or that it is to wait."""
+
 DIED = "died"
 """Operator to world: a process has died, and how."""
 

@@ -97,6 +97,7 @@ class OperatorSession:
         self._gone_s = math.inf
         self._stop_told = False
         self._control = bus.publisher(topics.by(topics.OPERATOR, topics.CONTROL))
+        self._pace = bus.publisher(topics.by(topics.OPERATOR, topics.PACE))
         self._report = bus.publisher(topics.by(topics.OPERATOR, topics.DIED))
         self._remote = {topics.alive(name): name for name in remote}
         self._missing = list(remote)
@@ -141,6 +142,8 @@ class OperatorSession:
             self._show(progress)
         elif what == topics.TOLD:
             self._tell(data.decode())
+        elif what == topics.PACE:
+            self._pace(data)
         elif what == topics.RESTART:
             self._restart(int(data))
         elif what in SIGNALS:
