@@ -37,6 +37,10 @@ class LockStep:
             outcome = self._tick()
         return outcome
 
+    @property
+    def punctuality(self) -> None:
+        """There is no schedule."""
+
     def _tick(self) -> Outcome | None:
         world = self.world
         truth = world.truth()

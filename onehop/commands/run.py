@@ -4,8 +4,12 @@ import time
 from pathlib import Path
 from typing import Any
 
+import msgspec
+
 from onehop.commands.output import emit_json, say, stdout, table
-from onehop.mission.progress import Display
+from onehop.contracts.errors import InputError
+from onehop.contracts.operation import Punctuality
+from onehop.mission.progress import Display, lateness_in_words
 from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
@@ -67,6 +71,14 @@ def run(
     return 0 if summary["outcome"] == "arrived" else 1
 
 
+def clock_settings(clock: str | None, speed: float | None) -> list[str]:
+    """--clock and --speed as settings of the scenario. Raises InputError."""
+    if speed is not None and clock == "lockstep":
+        raise InputError("--speed", "lock-step is as fast as it can be", "--clock realtime with it")
+    settings = [] if clock is None else [f'clock.mode="{clock}"']
+    return settings if speed is None else [*settings, f"clock.speed={speed!r}"]
+
+
 def _fresh_folder(bundle: Bundle) -> Path:
     """runs/<scenario>-<seed>-<time>: a run never overwrites another. Raises InputError."""
     stem = f"{bundle.scenario.name}-{bundle.scenario.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
@@ -122,6 +134,9 @@ def _print(summary: dict[str, Any], folder: Path) -> None:
         f"simulated   {summary['sim_s']:.1f} s in {summary['wall_s']:.1f} s: {summary['ticks']} ticks, "
         f"{summary['ticks_per_s']:.0f} a second, {summary['real_time_factor']:.1f}x real time"
     )
+    if "realtime" in summary:
+        punctuality = msgspec.convert(summary["realtime"], Punctuality)
+        console.print(f"real time   {lateness_in_words(punctuality)}")
     console.print(f"collisions  {summary['collisions']}")
     console.print(f"digest      {summary['digest'] or 'none: the recorder did not finish'}")
     console.print(f"log         {summary['log'] or 'none'}")
