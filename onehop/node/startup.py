@@ -68,7 +68,7 @@ def be_on_time(is_ours: bool = True) -> None:
     """Let this process run as soon as it wakes up: it has a schedule.
 
     Where the system allows it (CAP_SYS_NICE, RLIMIT_RTPRIO) it goes before all that is not in real time
-    (SCHED_RR, as ros2_control's controller manager asks for SCHED_FIFO), else by the scheduler's default.
+    (SCHED_RR, as ros2_control's controller manager asks for SCHED_FIFO), else by the usual scheduling.
     is_ours: it is none of anybody's programs, and goes before those. Threads that there are already are
     told one by one.
     """
