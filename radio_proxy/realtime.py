@@ -38,7 +38,7 @@ class RealTimeRadio:
             i: bus.publisher(topics.to(topics.robot_name(i), topics.HEARD), may_drop=True)
             for i in robots
         }
-        self._put_carried = bus.publisher(topics.by(topics.RADIO, topics.CARRIED), may_drop=True)
+        self._put_carried = bus.publisher(topics.by(topics.RADIO, topics.CARRIED))
         self._delivered: list[WireMessage] = []
         self._anchor = 0
         self._tick = 0

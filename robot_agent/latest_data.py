@@ -22,6 +22,7 @@ class LatestData:
         self._host = host
         self._put = put
         self.is_used = False
+        self._steps = 0
         self._observation: bytes | None = None
         self._heard: list[Heard] = []
 
@@ -45,4 +46,6 @@ class LatestData:
         seen = decode(Observation, self._observation)
         inbox = inbox_of(seen.tick, seen.time_ns, self._heard)
         self._observation, self._heard = None, []
-        self._put(encode(Acted(inbox.heard, self._host.step(percept(seen, inbox)))))
+        said = self._host.step(percept(seen, inbox))
+        self._steps += 1
+        self._put(encode(Acted(self._steps, inbox.heard, said)))

@@ -56,7 +56,7 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int:
         return startup.PROGRAM_FAILED
 
     watchdog = Watchdog(silence_s, lambda failure: os._exit(fail(failure)))
-    latest = LatestData(host, bus.publisher(topics.by(name, topics.ACTED), may_drop=True))
+    latest = LatestData(host, bus.publisher(topics.by(name, topics.ACTED)))
     bus.announce(name)
     will_be_stopped = False
     while True:

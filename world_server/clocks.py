@@ -64,7 +64,7 @@ def real_time(parts: Parts) -> RealTime:
         robots.refuse(robot, "named receptions that it was not given")
 
     recording = RealTimeRecording(bus, mail, clock.period_ns, lied)
-    radio = RealTimeRadio(bus, mail, schedule, recording.take, clock.silence_s)
+    radio = RealTimeRadio(bus, mail, roll, schedule, recording.take, clock.silence_s)
     robots = RealTimeRobots(bus, mail, roll, ids, clock.silence_s, radio.hand_over)
     return RealTime(
         parts.world,

@@ -83,7 +83,7 @@ def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str
         started = time.monotonic()
         outcome = mission.run()
     except MissionBrokenError as broken:
-        outcome = world.aborted(broken.reason)
+        outcome = mission.broken_off(broken.reason)
     wall_s = time.monotonic() - started
     recording.hand_over()
     mail.close_mission()

@@ -347,9 +347,11 @@ class Heard(Wire, frozen=True, omit_defaults=True):
 class Acted(Wire, frozen=True):
     """In real time: a robot's answer to an observation (key acted). action: an Action, as logged.
 
-    heard: numbers of what it has taken in from the radio since the last one.
+    number: of this answer, from 1 in each incarnation: one that is missing has changed its state. heard:
+    numbers of what it has taken in from the radio since the last one.
     """
 
+    number: int
     heard: tuple[int, ...]
     action: bytes
 

@@ -37,7 +37,7 @@ class RealTimeFaults:
         self._open_briefings = open_briefings
         self._briefings = contextlib.ExitStack()
         self._say = {
-            (what, i): bus.publisher(topics.to(topics.robot_name(i), what), may_drop=True)
+            (what, i): bus.publisher(topics.to(topics.robot_name(i), what))
             for what in (topics.KILL, topics.STOP, topics.WAKE)
             for i in robots
         }

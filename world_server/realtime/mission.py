@@ -8,6 +8,8 @@ the clock by itself, and the record is put together when all of it is there.
 import time
 from dataclasses import dataclass, field
 
+from msgspec.structs import replace
+
 from onehop.contracts import topics
 from onehop.contracts.messages import Outcome, Truth
 from onehop.contracts.operation import Punctuality
@@ -64,6 +66,12 @@ class RealTime:
         last = self.world.tick - 1
         self.mail.wait(lambda: self.radio.last_tick >= last, LAST_ACCOUNT_S)
         return outcome
+
+    def broken_off(self, reason: str) -> Outcome:
+        """The account of a mission that is broken off now; its last tick is the last one recorded."""
+        self.recording.hand_over()
+        outcome = self.world.aborted(reason)
+        return replace(outcome, ticks=min(outcome.ticks, self.recording.last_tick + 1))
 
     @property
     def punctuality(self) -> Punctuality:

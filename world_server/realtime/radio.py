@@ -11,6 +11,7 @@ from onehop.wire.batch import TickMessages, unpack_tick
 from onehop.wire.codec import encode
 from world_server.mailbox import Mailbox, MissionBrokenError
 from world_server.realtime.schedule import Schedule
+from world_server.roll_call import ACCOUNT_S, RollCall
 
 
 class RealTimeRadio:
@@ -20,21 +21,27 @@ class RealTimeRadio:
         self,
         bus: Bus,
         mail: Mailbox,
+        roll: RollCall,
         schedule: Schedule,
         take: Callable[[TickMessages], None],
         silence_s: float,
     ) -> None:
+        self._mail = mail
+        self._roll = roll
         self._schedule = schedule
         self._take = take
         self._silence_s = silence_s
-        self._put_placed = bus.publisher(topics.to(topics.RADIO, topics.PLACED), may_drop=True)
-        self._put_handed = bus.publisher(topics.to(topics.RADIO, topics.HANDED), may_drop=True)
+        self._put_placed = bus.publisher(topics.to(topics.RADIO, topics.PLACED))
+        self._put_handed = bus.publisher(topics.to(topics.RADIO, topics.HANDED))
         self._heard_s: float | None = None
         self.last_tick = -1
         mail.read(topics.RADIO, topics.CARRIED, self._on_carried)
 
     def place(self, truth: Truth) -> None:
-        """Tell where everybody is from now on. Raises MissionBrokenError when it has been silent."""
+        """Tell where everybody is from now on. Raises MissionBrokenError when there is no radio."""
+        if topics.RADIO not in self._roll.present:
+            self._mail.wait(lambda: False, 2.0 * ACCOUNT_S)  # until it is known how it ended
+            raise MissionBrokenError("the radio is gone")
         now_s = time.monotonic()
         if self._heard_s is None:
             self._heard_s = now_s

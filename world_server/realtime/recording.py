@@ -21,8 +21,12 @@ from world_server.realtime.robots import Answers, Given
 BATCH_TICKS = 3
 """Ticks that go to the recorder at once."""
 
-UNDER_WAY_BYTES = 1 << 20
-"""What may be under way to the recorder: less than queues and sockets hold, so that no put waits [B]."""
+BATCH_BYTES = 1 << 16
+"""The same [B]: a batch ends with the tick that exceeds it."""
+
+UNDER_WAY_BYTES = 1 << 17
+"""What may be under way to the recorder when a batch is sent [B]. With the batch that is less than
+Zenoh's queue (two of 64 KiB) and the buffers of a connection hold: no put waits for the recorder."""
 
 WAITING_BYTES = 1 << 26
 """What waits in the world at most until the recorder has caught up [B]; what comes then is left out."""
@@ -53,9 +57,7 @@ class RealTimeRecording:
     """
 
     def __init__(self, bus: Bus, mail: Mailbox, period_ns: int, on_lie: Callable[[int], None]) -> None:
-        self._put_ticks = bus.publisher(
-            topics.to(topics.RECORDER, topics.TICKS), express=False, may_drop=True
-        )
+        self._put_ticks = bus.publisher(topics.to(topics.RECORDER, topics.TICKS), express=False)
         self._period_ns = period_ns
         self._on_lie = on_lie
         self._open: dict[int, _Tick] = {}
@@ -95,8 +97,10 @@ class RealTimeRecording:
         self._complete()
 
     def hand_over(self) -> None:
-        """Send all that is whole, at the end of the mission."""
+        """Send all that is whole, at the end of the mission; the rest is left out."""
         self._complete()
+        self.left_out += sum(1 for one in self._open.values() if one.answers is not None)
+        self._open.clear()
         self._send(least=1)
 
     def _complete(self) -> None:
@@ -140,7 +144,7 @@ class RealTimeRecording:
         while len(self._waiting) >= least and (self._under_way_bytes < UNDER_WAY_BYTES or least == 1):
             batch: list[TickMessages] = []
             bytes_of_batch = 0
-            while self._waiting and len(batch) < BATCH_TICKS:
+            while self._waiting and len(batch) < BATCH_TICKS and bytes_of_batch < BATCH_BYTES:
                 size, tick = self._waiting.popleft()
                 bytes_of_batch += size
                 batch.append(tick)

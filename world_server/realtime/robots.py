@@ -32,8 +32,12 @@ UNASKED = "spoke without being asked"
 
 @dataclass(slots=True)
 class Given:
-    """An answer. data: the action as it came. heard: what of the radio's messages went into it."""
+    """An answer. data: the action as it came. heard: what of the radio's messages went into it.
 
+    number: of this answer of its process.
+    """
+
+    number: int
     action: Action
     data: bytes
     heard: tuple[int, ...]
@@ -60,7 +64,7 @@ class Answers:
 class _Robot:
     """What the world knows of one. asked: ticks of questions without an answer, and when they were put.
 
-    is_prompt: what it hands to its NIC is in the air at once; not so of a slow one.
+    is_prompt: what it hands to its NIC is in the air at once; not so of a slow one. answers: so far.
     """
 
     put: Callable[[bytes], None]
@@ -70,11 +74,12 @@ class _Robot:
     asked: dict[int, float] = field(default_factory=dict)
     given: deque[Given] = field(default_factory=deque)
     refused: str | None = None
+    answers: int = 0
 
     def begin(self, incarnation: int) -> None:
         """Another process is there, or nobody any more."""
         self.incarnation, self.runs, self.refused = incarnation, False, None
-        self.asked, self.given = {}, deque()
+        self.asked, self.given, self.answers = {}, deque(), 0
 
 
 class RealTimeRobots:
@@ -181,9 +186,12 @@ class RealTimeRobots:
         wrong = self._limits.breach(action, action.tick, robot.incarnation)
         if wrong is None and action.tick not in robot.asked:
             wrong = UNASKED
+        if wrong is None and given.number != robot.answers + 1:
+            wrong = f"its answer {robot.answers + 1} was lost on its way"
         if wrong is not None:
             self.refuse(i, wrong)
             return
+        robot.answers = given.number
         robot.asked = {tick: at_s for tick, at_s in robot.asked.items() if tick > action.tick}
         robot.given.append(given)
         self._pass_on(robot)
@@ -198,7 +206,8 @@ class RealTimeRobots:
             raise DecodeError(f"put no answer: {error}") from None
         if len(acted.heard) > MOST_HEARD:
             raise DecodeError(f"put no answer: names {len(acted.heard)} receptions")
-        return Given(action_in(acted.action, self._limits), acted.action, acted.heard)
+        action = action_in(acted.action, self._limits)
+        return Given(acted.number, action, acted.action, acted.heard)
 
     def _on_failure(self, i: int, reason: bytes) -> None:
         """A robot says that its program has failed, in place of an action."""
