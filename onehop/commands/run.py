@@ -4,17 +4,14 @@ import time
 from pathlib import Path
 from typing import Any
 
-import msgspec
-
 from onehop.commands.output import emit_json, say, stdout, table
 from onehop.contracts.errors import InputError
-from onehop.contracts.operation import Punctuality
-from onehop.mission.progress import Display, lateness_in_words
+from onehop.mission.progress import Display
 from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import FIGURE, REMEDY, claimed, explained
-from onehop.wire.summary import summary_file
+from onehop.wire.summary import punctuality_of, summary_file
 
 
 def run(
@@ -134,9 +131,9 @@ def _print(summary: dict[str, Any], folder: Path) -> None:
         f"simulated   {summary['sim_s']:.1f} s in {summary['wall_s']:.1f} s: {summary['ticks']} ticks, "
         f"{summary['ticks_per_s']:.0f} a second, {summary['real_time_factor']:.1f}x real time"
     )
-    if "realtime" in summary:
-        punctuality = msgspec.convert(summary["realtime"], Punctuality)
-        console.print(f"real time   {lateness_in_words(punctuality)}")
+    punctuality = punctuality_of(summary)
+    if punctuality is not None:
+        console.print(f"real time   {punctuality.in_words()}")
     console.print(f"collisions  {summary['collisions']}")
     console.print(f"digest      {summary['digest'] or 'none: the recorder did not finish'}")
     console.print(f"log         {summary['log'] or 'none'}")

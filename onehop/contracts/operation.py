@@ -24,6 +24,15 @@ class Punctuality(Value, frozen=True):
     unanswered: int
     unrecorded_ticks: int
 
+    def in_words(self) -> str:
+        """The same in one line, for people."""
+        words = f"{self.late_ticks} late ticks, {self.latest_ms:.1f} ms at most"
+        if self.moved_ms:
+            words += f", schedule moved by {self.moved_ms:.0f} ms"
+        if self.unrecorded_ticks:
+            words += f", {self.unrecorded_ticks} ticks not recorded"
+        return words
+
 
 class End(Wire, frozen=True):
     """World to all: the mission is over (key end). last_tick: the last one that is recorded.

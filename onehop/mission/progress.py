@@ -12,7 +12,7 @@ from rich.live import Live
 from rich.table import Table
 from rich.text import Text
 
-from onehop.contracts.operation import Progress, Punctuality
+from onehop.contracts.operation import Progress
 from onehop.contracts.scenario import Scenario
 
 PLAIN_S = 5.0
@@ -71,7 +71,7 @@ class Display:
                 f"{status.error:.0f} m to go, {line.speed:.1f} m/s)"
             )
         if progress.punctuality is not None:
-            words.append(lateness_in_words(progress.punctuality))
+            words.append(progress.punctuality.in_words())
         return Text("  ".join(words))
 
     def _links(self, progress: Progress) -> Table:
@@ -95,13 +95,3 @@ class Display:
                 "" if leads else f"{status.k_rho:.1f}",
             )
         return links
-
-
-def lateness_in_words(punctuality: Punctuality) -> str:
-    """How a mission of real time kept its schedule, in one line."""
-    words = f"{punctuality.late_ticks} late ticks, {punctuality.latest_ms:.1f} ms at most"
-    if punctuality.moved_ms:
-        words += f", schedule moved by {punctuality.moved_ms:.0f} ms"
-    if punctuality.unrecorded_ticks:
-        words += f", {punctuality.unrecorded_ticks} ticks not recorded"
-    return words

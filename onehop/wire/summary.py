@@ -67,6 +67,13 @@ class _Summary(msgspec.Struct):
     sim_s: float
     digest: str | None
     collisions: int
+    realtime: Punctuality | None = None
+
+
+def punctuality_of(summary: Mapping[str, Any]) -> Punctuality | None:
+    """How a mission of real time kept its schedule; None for one in lock-step."""
+    said = summary.get("realtime")
+    return None if said is None else msgspec.convert(said, Punctuality)
 
 
 def decode_summary(text: str) -> dict[str, Any]:

@@ -67,6 +67,7 @@ class _Robot:
     is_prompt: what it hands to its NIC is in the air at once; not so of a slow one. answers: so far.
     """
 
+    id: int
     put: Callable[[bytes], None]
     incarnation: int = -1
     runs: bool = False
@@ -104,7 +105,7 @@ class RealTimeRobots:
         self._ids = {topics.robot_name(i): i for i in robots}
         for name, i in self._ids.items():
             put = bus.publisher(topics.to(name, topics.OBSERVATION), may_drop=True)
-            self._robots[i] = _Robot(put)
+            self._robots[i] = _Robot(i, put)
             mail.read(name, topics.ACTED, partial(self._on_acted, i))
             mail.read(name, topics.FAILED, partial(self._on_failure, i))
         mail.read_stray(self._on_stray)
@@ -166,9 +167,8 @@ class RealTimeRobots:
         if robot.runs and robot.is_prompt and not given.is_handed_over and given.action.outbox:
             given.is_handed_over = True
             action = given.action
-            which = next(i for i, one in self._robots.items() if one is robot)
             self._hand_over(
-                TransmitRequest(which, action.speed, action.remaining_distance, action.outbox)
+                TransmitRequest(robot.id, action.speed, action.remaining_distance, action.outbox)
             )
 
     def _on_acted(self, i: int, data: bytes) -> None:
