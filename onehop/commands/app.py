@@ -12,6 +12,7 @@ from typer import Argument, Option
 
 from onehop.commands import numbers
 from onehop.commands.numbers import within
+from onehop.commands.optional_address import LIVE, OptionalAddress
 
 app = typer.Typer(
     name="onehop",
@@ -26,6 +27,11 @@ app = typer.Typer(
 class Driver(StrEnum):
     PROCESSES = "processes"
     INLINE = "inline"
+
+
+class Clock(StrEnum):
+    LOCKSTEP = "lockstep"
+    REALTIME = "realtime"
 
 
 class Preset(StrEnum):
@@ -53,6 +59,10 @@ AsJson = Annotated[
     bool, Option("--json", help="Print one JSON object on stdout and nothing else there.")
 ]
 
+Browser = Annotated[
+    bool, Option("--browser/--no-browser", help="Open the page, if there is a screen to open it on.")
+]
+
 
 def leave(status: int) -> NoReturn:
     raise typer.Exit(status)
@@ -65,10 +75,17 @@ def _help(context: typer.Context) -> None:
         leave(2)
 
 
-@app.command()
+@app.command(cls=OptionalAddress)
 def run(
     scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
     driver: Annotated[Driver, Option(help="One process each, or all in one.")] = Driver.PROCESSES,
+    clock: Annotated[
+        Clock | None, Option(help="Everyone waits for everyone in a tick, or nobody for anybody.")
+    ] = None,
+    speed: Annotated[
+        float | None,
+        Option(help="In real time: simulated seconds in one second.", callback=within(numbers.SPEED)),
+    ] = None,
     seed: Annotated[
         int | None, Option(help="Seed of everything random.", callback=within(numbers.SEED))
     ] = None,
@@ -102,6 +119,15 @@ def run(
         bool, Option("--view/--no-view", help="Add to the log what Foxglove and Rerun show.")
     ] = True,
     as_json: AsJson = False,
+    live: Annotated[
+        str | None,
+        Option(
+            LIVE,
+            metavar="[HOST:PORT]",
+            help="Watch it, and lay hands on it, in a browser (docs/live.md).",
+        ),
+    ] = None,
+    browser: Browser = True,
 ) -> None:
     """Run a mission: every robot a process on the bus, recorded.
 
@@ -111,10 +137,15 @@ def run(
     """
     from onehop.commands import run as command
 
+    settings = [*settings, *command.clock_settings(None if clock is None else clock.value, speed)]
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
     hosts = command.Hosts(bus, keys, remote, mission, wait_s, router.value)
-    leave(command.run(scenario, driver.value, settings, seed, *places, *wanted, program, hosts))
+    given = command.run(
+        scenario, driver.value, settings, seed, *places, *wanted, program, hosts,
+        live=live, browser=browser,
+    )  # fmt: skip
+    leave(given)
 
 
 @app.command()

@@ -1,5 +1,6 @@
 """`onehop run`: a mission from its scenario to its outcome, with a log, a summary and a figure."""
 
+import contextlib
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +15,7 @@ from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import FIGURE, REMEDY, claimed, explained
-from onehop.wire.summary import summary_file
+from onehop.wire.summary import punctuality_of, summary_file, write_summary
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,11 +44,16 @@ def run(
     as_json: bool,
     program: str | None = None,
     hosts: Hosts | None = None,
+    live: str | None = None,
+    browser: bool = True,
 ) -> int:
     """Run one mission; returns the exit status.
 
     program: of the team, in place of the scenario's. hosts: the bus of a mission on several hosts.
+    live: where the live page is served (guard.parse_address). browser: open it, if there is a screen.
     """
+    if live is not None:
+        _require_what_is_shown(driver, record)
     if program is not None:
         settings = [*settings, f"team.program={program}"]
     bundle = scenario_file.load(
@@ -64,7 +70,14 @@ def run(
     if driver == "inline":
         require_programs(bundle.scenario, str(scenario))
     folder = out or _fresh_folder(bundle)
-    with claimed(folder) as claim:
+    with contextlib.ExitStack() as page, claimed(folder) as claim:
+        shown = None
+        if live is not None:
+            from onehop.commands.live import live_page, words_of
+
+            places = (("--map", map_file), ("--start", start), ("--goal", goal))
+            words = words_of(scenario, settings, bundle.scenario.seed, places)
+            shown = page.enter_context(live_page(live, browser, folder, words))
         with Display(bundle.scenario) as display:
             if driver == "inline":
                 from onehop.commands.inline_run import run_inline
@@ -76,7 +89,11 @@ def run(
 
                 arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
                 plan = launcher.plan(bundle, arguments, folder, claim, record, placement)
-                summary = launcher.run(plan, display.show, display.tell)
+                attend = launcher.nobody if shown is None else shown.attend
+                summary = launcher.run(plan, display.show, display.tell, attend)
+        if summary["log"] is not None:
+            summary["energy"] = _energy(Path(summary["log"]))
+            write_summary(folder, summary)
         if as_json:
             emit_json(summary)
         else:
@@ -85,6 +102,8 @@ def run(
             figure = _add_pictures(Path(summary["log"]), with_view)
             if not as_json:
                 print(f"figure      {figure}")
+        if shown is not None:
+            shown.stay(summary)
     return 0 if summary["outcome"] == "arrived" else 1
 
 
@@ -101,6 +120,22 @@ def _placed(hosts: Hosts, driver: str, bundle: Bundle) -> Placement | None:
     return on_hosts(hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s, robots, external)
 
 
+def _require_what_is_shown(driver: str, record: bool) -> None:
+    """Raises InputError."""
+    if driver == "inline":
+        raise InputError("--live", "a mission in one process has no page", "--driver processes")
+    if not record:
+        raise InputError("--live", "it shows the log as it is written", "leave out --no-record")
+
+
+def clock_settings(clock: str | None, speed: float | None) -> list[str]:
+    """--clock and --speed as settings of the scenario. Raises InputError."""
+    if speed is not None and clock == "lockstep":
+        raise InputError("--speed", "lock-step is as fast as it can be", "--clock realtime with it")
+    settings = [] if clock is None else [f'clock.mode="{clock}"']
+    return settings if speed is None else [*settings, f"clock.speed={speed!r}"]
+
+
 def _fresh_folder(bundle: Bundle) -> Path:
     """runs/<scenario>-<seed>-<time>: a run never overwrites another. Raises InputError."""
     stem = f"{bundle.scenario.name}-{bundle.scenario.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
@@ -114,6 +149,20 @@ def _fresh_folder(bundle: Bundle) -> Path:
             except FileExistsError:
                 number += 1
                 folder = Path("runs") / f"{stem}-{number}"
+
+
+def _energy(log: Path) -> list[dict[str, Any]]:
+    """What each robot has spent, driving and in its card [J], from the first tick to the last."""
+    from onehop.analysis.log import open_log
+
+    spent = open_log(log).table("energy")
+    robots = sorted(set(spent["robot"].tolist()))
+    kinds = ("drive_j", "radio_j")
+    of = {robot: spent.of(robot) for robot in robots}
+    return [
+        {"robot": robot, **{kind: round(float(of[robot][kind].sum()), 1) for kind in kinds}}
+        for robot in robots
+    ]
 
 
 def _add_pictures(log: Path, with_view: bool) -> Path:
@@ -156,7 +205,15 @@ def _print(summary: dict[str, Any], folder: Path) -> None:
         f"simulated   {summary['sim_s']:.1f} s in {summary['wall_s']:.1f} s: {summary['ticks']} ticks, "
         f"{summary['ticks_per_s']:.0f} a second, {summary['real_time_factor']:.1f}x real time"
     )
+    punctuality = punctuality_of(summary)
+    if punctuality is not None:
+        console.print(f"real time   {punctuality.in_words()}")
     console.print(f"collisions  {summary['collisions']}")
+    if "energy" in summary:
+        driving, cards = (
+            sum(entry[kind] for entry in summary["energy"]) / 1000.0 for kind in ("drive_j", "radio_j")
+        )
+        console.print(f"energy      {driving:.1f} kJ for driving, {cards:.1f} kJ for the radio cards")
     console.print(f"digest      {summary['digest'] or 'none: the recorder did not finish'}")
     console.print(f"log         {summary['log'] or 'none'}")
     console.print(f"summary     {summary_file(folder)}")

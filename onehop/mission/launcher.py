@@ -5,20 +5,22 @@ import math
 import os
 import time
 from collections.abc import Callable, Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from onehop.contracts import topics
 from onehop.contracts.errors import InputError, MissionError
-from onehop.contracts.operation import Progress
+from onehop.contracts.operation import Pace, Progress
 from onehop.mission.operator import LOST_WORD, STOPPED, Ending, OperatorSession, aborted, ending_by_death
 from onehop.mission.placement import Placement
 from onehop.mission.processes import ProcessGroup, on_loopback
-from onehop.mission.rendezvous import entrance, published
+from onehop.mission.rendezvous import Rendezvous, entrance, published
 from onehop.mission.stops import StopRequest
 from onehop.node.bus import CONNECT_TIMEOUT_MS, LEASE_MS, Bus, open_client
 from onehop.scenario.bundle import Bundle
+from onehop.wire.codec import encode
 from onehop.wire.output_folder import LOG
 from onehop.wire.summary import read_summary, summarize, write_summary
 
@@ -58,6 +60,26 @@ class LaunchPlan:
     placement: Placement | None = None
 
 
+@dataclass(frozen=True, slots=True)
+class Running:
+    """A mission that runs, for who wants to lay hands on it.
+
+    way_in: for its faults. set_pace: how fast it goes; any thread may call it, also after the end.
+    """
+
+    way_in: Rendezvous
+    set_pace: Callable[[Pace], None]
+
+
+Attendance = Callable[[Running], AbstractContextManager[None]]
+"""What is entered as soon as a mission runs, and left at its end."""
+
+
+def nobody(_: Running) -> AbstractContextManager[None]:
+    """The attendance of a mission on which nobody lays hands."""
+    return contextlib.nullcontext()
+
+
 def plan(
     bundle: Bundle,
     world_arguments: tuple[str, ...],
@@ -73,16 +95,20 @@ def plan(
 
 
 def run(
-    plan: LaunchPlan, show: Callable[[Progress], None], tell: Callable[[str], None] = lambda _: None
+    plan: LaunchPlan,
+    show: Callable[[Progress], None],
+    tell: Callable[[str], None] = lambda _: None,
+    attend: Attendance = nobody,
 ) -> dict[str, Any]:
     """Run a mission to its end, write its summary and return it.
 
     show: takes progress, some times a second. tell: takes lines for people, when something went wrong.
+    attend: entered while the mission runs.
     Raises MissionError or InputError when it cannot be run, Stopped after an orderly end on Ctrl-C,
     SIGTERM or SIGHUP.
     """
     with StopRequest() as stop:
-        summary = _Launch(plan, stop, show, tell).summary()
+        summary = _Launch(plan, stop, show, tell, attend).summary()
         try:
             write_summary(plan.out, summary)
         except InputError:
@@ -101,11 +127,13 @@ class _Launch:
         stop: StopRequest,
         show: Callable[[Progress], None],
         tell: Callable[[str], None],
+        attend: Attendance,
     ) -> None:
         self._plan = plan
         self._stop = stop
         self._show = show
         self._tell = tell
+        self._attend = attend
         self._log = plan.out / LOG
         self._log_before = _written_ns(self._log)
 
@@ -129,7 +157,9 @@ class _Launch:
         if left is not None:
             return {**left, "processes": [process._asdict() for process in group.processes]}
         log = str(self._log) if _written_ns(self._log) != self._log_before else None
-        return summarize(ending.outcome, ending.wall_s, ending.digest, log, group.processes)
+        return summarize(
+            ending.outcome, ending.wall_s, ending.digest, log, group.processes, ending.punctuality
+        )
 
     def _run_once(self, group: ProcessGroup, placement: Placement) -> Ending | None:
         """One attempt; None when the port was taken in between."""
@@ -146,7 +176,8 @@ class _Launch:
         if placement.remote:
             self._tell(placement.invitation())
         way_in = entrance(placement, group.identity(topics.INJECTOR), os.getpid())
-        with bus, published(self._plan.out, way_in):
+        running = Running(way_in, lambda pace: bus.tell_self(topics.PACE, encode(pace)))
+        with bus, published(self._plan.out, way_in), self._attend(running):
             remote = placement.remote
             session = OperatorSession(group, bus, self._stop, self._show, self._tell, remote)
             ending = session.until_end()
