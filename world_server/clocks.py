@@ -12,6 +12,7 @@ from world_server.core.world import World
 from world_server.fault_orders import FaultOrders
 from world_server.lockstep import LockStep
 from world_server.mailbox import Mailbox
+from world_server.pace import PaceKeeper
 from world_server.process_faults import ProcessFaults
 from world_server.progress import ProgressReports
 from world_server.realtime.faults import RealTimeFaults
@@ -42,14 +43,17 @@ def lock_step(parts: Parts) -> LockStep:
     """Everyone waits for its inputs of a tick, and for nothing else."""
     bus, mail, roll = parts.bus, parts.mail, parts.roll
     robots, silence_s = parts.scenario.team.robots, parts.scenario.clock.silence_s
+    recording = Recording(bus, mail, silence_s)
+    orders = FaultOrders(bus, mail, robots)
     return LockStep(
         parts.world,
         RemoteRadio(bus, mail, silence_s),
         RemoteRobots(bus, mail, roll, robots, silence_s),
         ProcessFaults(bus, mail, roll, robots, parts.open_briefings, silence_s),
-        FaultOrders(bus, mail, robots),
-        Recording(bus, mail, silence_s),
+        orders,
+        recording,
         ProgressReports(bus),
+        PaceKeeper(mail, recording, orders),
     )
 
 

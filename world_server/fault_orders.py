@@ -40,6 +40,11 @@ class FaultOrders:
         for robot in robots:
             mail.read(topics.robot_name(robot), topics.ARRIVAL, partial(self._on_arrival, robot))
 
+    @property
+    def are_waiting(self) -> bool:
+        """Whether an order is there that waits for the next tick."""
+        return bool(self._waiting)
+
     def take(self, world: World) -> tuple[FaultSection, ...]:
         """The orders that are to be carried out with the next tick; the others are refused."""
         self.arrived = set()

@@ -11,6 +11,7 @@ from onehop.contracts.messages import Outcome
 from onehop.wire.codec import encode
 from world_server.core.world import World
 from world_server.fault_orders import FaultOrders
+from world_server.pace import PaceKeeper
 from world_server.process_faults import ProcessFaults
 from world_server.progress import ProgressReports
 from world_server.recording import Recording
@@ -29,6 +30,7 @@ class LockStep:
     orders: FaultOrders
     recording: Recording
     progress: ProgressReports
+    pace: PaceKeeper
 
     def run(self) -> Outcome:
         """Tick until the mission has an outcome. Raises MissionBrokenError."""
@@ -58,6 +60,7 @@ class LockStep:
         self.recording.add(
             truth.tick, [(topics.TRUTH, encoded_truth), *carried, *observations, *answers.wire]
         )
+        self.pace.hold()
         world.advance(answers.actions, self.orders.take(world))
         for robot, why in answers.fenced.items():
             world.fence(robot, why)

@@ -11,7 +11,7 @@ from onehop.contracts.arrays import FloatArray
 from onehop.contracts.operation import End
 from onehop.maps.map_file import load_map
 from onehop.node import startup
-from onehop.node.bus import Bus, open_router
+from onehop.node.bus import Bus
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
@@ -22,7 +22,7 @@ from world_server.mailbox import Mailbox, MissionBrokenError
 from world_server.roll_call import ACCOUNT_S, RollCall
 
 START_S = 30.0
-"""How long the start of all processes may take [s]."""
+"""How long the start of all processes may take [s], if nothing else is said."""
 
 RECORDER_AWAY_S = 10.0
 """How long the recorder may be cut off in real time [s]: the world keeps what it is to write."""
@@ -46,8 +46,8 @@ def main() -> int:
     with scenario_file.in_file(options.scenario):
         world = World(bundle.scenario, walls)
     world.observe()  # compiles or loads the laser kernel before anyone waits for it
-    with open_router(options.mission, options.listen, startup.credentials()) as bus:
-        _host(bus, bundle, world, walls.segments, options.driver)
+    with startup.listen(options, topics.clients(bundle.scenario.team.robots)) as bus:
+        _host(bus, bundle, world, walls.segments, options.driver, options.start_s)
     return 0
 
 
@@ -60,11 +60,17 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--start", metavar="X,Y")
     parser.add_argument("--goal", metavar="X,Y")
     parser.add_argument("--listen", required=True, metavar="ENDPOINT", help="e.g. tcp/127.0.0.1:7447")
+    startup.add_keys(parser)
+    parser.add_argument(
+        "--start-s", type=float, default=START_S, metavar="S", help="how long to wait for the others [s]"
+    )
     parser.add_argument("--driver", default="processes", help="what the log calls this way of running")
     return parser.parse_args()
 
 
-def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str) -> None:
+def _host(
+    bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str, start_s: float
+) -> None:
     """Run the mission from the first process's arrival to the last one's farewell."""
     robots, clock = bundle.scenario.team.robots, bundle.scenario.clock
     mail = Mailbox(bus)
@@ -81,7 +87,7 @@ def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str
     started = time.monotonic()
     try:
         with open_briefings():
-            roll.gather(roll.everyone, START_S)
+            roll.gather(roll.everyone, start_s)
         startup.calm_garbage_collector()
         started = time.monotonic()
         outcome = mission.run()

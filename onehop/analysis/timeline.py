@@ -1,10 +1,10 @@
 """What happened to whom and when: departures, leaders, modes, faults; for figures and text."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from operator import itemgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from msgspec.structs import replace
@@ -58,28 +58,50 @@ class Leadership(NamedTuple):
     main: list[LeadershipTerm]
 
 
-def leadership(status: Table, left: Table, period_ns: int) -> Leadership:
-    """From the tables `status` and `departures`, sound or torn.
+class LeadershipLine:
+    """The same, tick by tick.
 
     What a robot says in tick k takes effect at the beginning of tick k + 1, unless it has left by then.
     """
-    history = LeadershipHistory()
-    main: list[LeadershipTerm] = []
+
+    def __init__(self, period_ns: int) -> None:
+        self._period_ns = period_ns
+        self._history = LeadershipHistory()
+        self.main: list[LeadershipTerm] = []
+
+    @property
+    def terms(self) -> list[LeadershipTerm]:
+        return self._history.terms
+
+    def on_departure(self, robot: int) -> None:
+        """A robot leaves the mission with the next tick, or has left it before."""
+        self._history.on_departure(robot)
+
+    def on_tick(self, tick: int, said: Iterable[Sequence[Any]]) -> None:
+        """What robots say of themselves in a tick: robot, leader, epoch, members, shape.
+
+        Of those alone who are there in the next tick too.
+        """
+        now_s = (tick + 1) * self._period_ns / 1e9
+        for robot, leader, epoch, members, shape in said:
+            self._history.on_status(now_s, robot, leader, epoch, members, shape)
+        _follow_main(self.main, self._history, now_s)
+
+
+def leadership(status: Table, left: Table, period_ns: int) -> Leadership:
+    """From the tables `status` and `departures`, sound or torn."""
+    line = LeadershipLine(period_ns)
     leaving = list(left.rows("tick", "robot"))
     statuses = status.rows("tick", "robot", "leader", "epoch", "members", "shape")
     for tick, rows in groupby(statuses, key=itemgetter(0)):
         gone = set()
         while leaving and leaving[0][0] <= tick + 1:
             at, robot = leaving.pop(0)
-            history.on_departure(robot)
+            line.on_departure(robot)
             if at == tick + 1:
                 gone.add(robot)
-        now_s = (tick + 1) * period_ns / 1e9
-        for _, robot, leader, epoch, members, shape in rows:
-            if robot not in gone:
-                history.on_status(now_s, robot, leader, epoch, members, shape)
-        _follow_main(main, history, now_s)
-    return Leadership(history.terms, main)
+        line.on_tick(tick, [said for _, *said in rows if said[0] not in gone])
+    return Leadership(line.terms, line.main)
 
 
 def _follow_main(main: list[LeadershipTerm], history: LeadershipHistory, now_s: float) -> None:

@@ -12,6 +12,7 @@ from typer import Argument, Option
 
 from onehop.commands import numbers
 from onehop.commands.numbers import within
+from onehop.commands.optional_address import LIVE, OptionalAddress
 
 app = typer.Typer(
     name="onehop",
@@ -53,6 +54,10 @@ AsJson = Annotated[
     bool, Option("--json", help="Print one JSON object on stdout and nothing else there.")
 ]
 
+Browser = Annotated[
+    bool, Option("--browser/--no-browser", help="Open the page, if there is a screen to open it on.")
+]
+
 
 def leave(status: int) -> NoReturn:
     raise typer.Exit(status)
@@ -65,7 +70,7 @@ def _help(context: typer.Context) -> None:
         leave(2)
 
 
-@app.command()
+@app.command(cls=OptionalAddress)
 def run(
     scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
     driver: Annotated[Driver, Option(help="One process each, or all in one.")] = Driver.PROCESSES,
@@ -90,11 +95,31 @@ def run(
         Option(metavar="MODULE:CLASS", help="Program of all robots without one of their own."),
     ] = None,
     out: Annotated[Path | None, Option(help="Folder for log, summary and figure.")] = None,
+    bus: Annotated[
+        str | None, Option(metavar="tls/HOST:PORT", help="Where the world listens for other hosts.")
+    ] = None,
+    keys: Annotated[Path | None, Option(metavar="DIR", help="Certificates, of onehop keys.")] = None,
+    remote: Annotated[
+        str, Option(metavar="3,4[,radio]", help="Who is started on other hosts, and waited for.")
+    ] = "",
+    mission: Annotated[str, Option(help="Prefix of its keys on a bus that others reach.")] = "onehop",
+    wait_s: Annotated[
+        float, Option("--wait", help="How long for other hosts [s].", callback=within(numbers.WAIT))
+    ] = 300.0,
     record: Annotated[bool, Option("--record/--no-record", help="Write the log.")] = True,
     with_view: Annotated[
         bool, Option("--view/--no-view", help="Add to the log what Foxglove and Rerun show.")
     ] = True,
     as_json: AsJson = False,
+    live: Annotated[
+        str | None,
+        Option(
+            LIVE,
+            metavar="[HOST:PORT]",
+            help="Watch it, and lay hands on it, in a browser (docs/live.md).",
+        ),
+    ] = None,
+    browser: Browser = True,
 ) -> None:
     """Run a mission: every robot a process on the bus, recorded.
 
@@ -107,7 +132,12 @@ def run(
     settings = [*settings, *command.clock_settings(None if clock is None else clock.value, speed)]
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
-    leave(command.run(scenario, driver.value, settings, seed, *places, *wanted, program))
+    hosts = command.Hosts(bus, keys, remote, mission, wait_s)
+    given = command.run(
+        scenario, driver.value, settings, seed, *places, *wanted, program, hosts,
+        live=live, browser=browser,
+    )  # fmt: skip
+    leave(given)
 
 
 @app.command()

@@ -7,7 +7,7 @@ from typing import Annotated
 from typer import Argument, Option
 
 from onehop.commands import numbers
-from onehop.commands.app import AsJson, Settings, app, leave
+from onehop.commands.app import AsJson, Browser, Settings, app, leave
 from onehop.commands.numbers import within
 
 
@@ -112,6 +112,23 @@ def explain(
     from onehop.commands import explain as command
 
     leave(command.explain(log, robot, at_s, window_s, as_json))
+
+
+@app.command()
+def live(
+    logs: Annotated[list[Path], Argument(metavar="LOG [LOG]", help="A log, or two side by side.")],
+    address: Annotated[
+        str, Option("--at", metavar="HOST:PORT", help="Where to serve it (default: a free port here).")
+    ] = "",
+    browser: Browser = True,
+) -> None:
+    """The live page on a log: play it, jump from event to event, ask why. Ctrl-C ends it.
+
+    Example: onehop live runs/demo/mission.mcap
+    """
+    from onehop.commands import live as command
+
+    leave(command.live(logs, address, browser))
 
 
 @app.command()

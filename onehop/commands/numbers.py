@@ -43,6 +43,15 @@ JOBS = Range(1, 1000)
 
 SHARE = Range(0.0, 1.0)
 
+ROBOTS = Range(1, 300)
+"""Robots of a team, as in a scenario."""
+
+DAYS = Range(1, 3650)
+"""How long a certificate is good [days]."""
+
+WAIT = Range(1.0, 86_400.0)
+"""How long a mission waits for processes on other hosts [s]."""
+
 
 def within(limits: Range) -> Callable[[CallbackParam, float | None], float | None]:
     """A check for an option's value. Raises InputError."""

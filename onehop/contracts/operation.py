@@ -77,6 +77,18 @@ class FaultAnswer(Wire, frozen=True):
     fault: FaultSection
 
 
+class Pace(Wire, frozen=True):
+    """Operator to world (key pace): how it goes from one tick to the next; the bytes stay what they are.
+
+    ticks_per_s: at most so many, wall clock [1/s]; 0 for as many as there can be. paused: it waits
+    after each tick. steps: ticks that it may take all the same, counted from this message on.
+    """
+
+    ticks_per_s: float
+    paused: bool
+    steps: int
+
+
 class RobotProgress(Value, frozen=True):
     """One line of the progress display; speed [m/s]."""
 

@@ -5,6 +5,7 @@ speaks under `from/<name>`; the world hears all that is said there. Bus keys lie
 prefix, so that missions on one machine never hear each other.
 """
 
+from collections.abc import Iterable
 from functools import lru_cache
 
 WORLD, RADIO, RECORDER, OPERATOR = "world", "radio", "recorder", "operator"
@@ -20,6 +21,11 @@ _remembered = lru_cache(maxsize=4096)
 def robot_name(robot: int | str) -> str:
     """Name of a robot's process, liveliness token and identity: robot-3."""
     return f"robot-{robot}"
+
+
+def clients(robots: Iterable[int]) -> tuple[str, ...]:
+    """Everyone on the bus of a mission but the world."""
+    return (RADIO, RECORDER, OPERATOR, INJECTOR, *map(robot_name, robots))
 
 
 def to(name: str, what: str) -> str:
@@ -100,6 +106,9 @@ PROGRESS = "progress"
 
 CONTROL = "control"
 """Operator to world: end the mission now."""
+
+PACE = "pace"
+"""Operator to world: how fast it is to go from tick to tick, or that it is to wait."""
 
 DIED = "died"
 """Operator to world: a process has died, and how."""

@@ -10,7 +10,6 @@ No thread outlives its session: the alarm and the threads of Python callbacks en
 """
 
 import contextlib
-import hashlib
 import json
 import os
 import secrets
@@ -29,6 +28,7 @@ from onehop.contracts.errors import MissionError
 from onehop.node import peer_limits
 from onehop.node.alarm import Alarm
 from onehop.node.gate import Gate, limit_unread
+from onehop.node.identity import Certificate, Identity, proof, session_id
 from onehop.node.parts import PART_BYTES, Parts, last_part, leading_parts
 from onehop.node.rights import access_control
 
@@ -65,7 +65,7 @@ LOW_LATENCY = (topics.RADIO, topics.robot_name(""))
 """Beginnings of the names of those whom every tick waits for: their links are of Zenoh's low-latency
 transport, which writes from the thread of the sender instead of waking another one."""
 
-_QUIET = {
+QUIET = {
     "scouting/multicast/enabled": False,
     "scouting/gossip/enabled": False,
     "transport/shared_memory/enabled": False,
@@ -73,16 +73,6 @@ _QUIET = {
     "timestamping/enabled": False,
 }
 """What nobody here uses. Without priorities a link is of low latency if both of its ends ask for it."""
-
-
-def make_credentials(names: Iterable[str]) -> dict[str, str]:
-    """A fresh password for every name of a mission."""
-    return {name: secrets.token_hex(16) for name in names}
-
-
-def session_id(password: str) -> str:
-    """The id of the one session that may use a password: 16 bytes in hexadecimal, no zero in front."""
-    return "1" + hashlib.sha256(password.encode()).hexdigest()[:31]
 
 
 class Bus:
@@ -292,31 +282,44 @@ class Bus:
 
 def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | None = None) -> Bus:
     """The world's session. credentials: passwords by name; without them anyone may say anything."""
-    settings: dict[str, Any] = {
-        "mode": "router",
-        "listen/endpoints": [endpoint],
-        "scouting/delay": 0,
-        "transport/unicast/lowlatency": True,
-        **peer_limits.SETTINGS,
-    }
     if credentials is None:
-        return Bus(_open_router(settings), mission, topics.WORLD)
+        return Bus(_open_router(endpoint, {}), mission, topics.WORLD)
     with tempfile.TemporaryFile("w") as dictionary:  # it has no name that could outlive this process
         dictionary.writelines(f"{name}:{word}\n" for name, word in credentials.items())
         dictionary.flush()
-        settings["transport/auth/usrpwd"] = {
+        login = {
             "user": topics.WORLD,
             "password": secrets.token_hex(16),
             "dictionary_file": f"/dev/fd/{dictionary.fileno()}",
         }
         sessions = {name: session_id(word) for name, word in credentials.items()}
-        settings["access_control"] = access_control(mission, sessions)
-        return Bus(_open_router(settings), mission, topics.WORLD, Gate(sessions))
+        rights = access_control(mission, sessions, "usernames")
+        settings = {"transport/auth/usrpwd": login, "access_control": rights}
+        return Bus(_open_router(endpoint, settings), mission, topics.WORLD, Gate(sessions))
 
 
-def _open_router(settings: Mapping[str, Any]) -> zenoh.Session:
-    session = _open(settings)
-    limit_unread(int(settings["listen/endpoints"][0].rpartition(":")[2]))
+def open_certified_router(
+    mission: str, endpoint: str, certificate: Certificate, names: Iterable[str]
+) -> Bus:
+    """The world's session, where everyone has a certificate. names: who may come."""
+    sessions = {name: session_id(name) for name in names}
+    rights = access_control(mission, sessions, "cert_common_names")
+    settings = {**certificate.settings("listen"), "access_control": rights}
+    gate = Gate(sessions, certified=True)
+    return Bus(_open_router(endpoint, settings), mission, topics.WORLD, gate)
+
+
+def _open_router(endpoint: str, settings: Mapping[str, Any]) -> zenoh.Session:
+    own = {
+        "mode": "router",
+        "listen/endpoints": [endpoint],
+        "scouting/delay": 0,
+        "transport/unicast/lowlatency": True,
+        **peer_limits.SETTINGS,
+        **settings,
+    }
+    session = _open(own)
+    limit_unread(int(endpoint.rpartition(":")[2]))
     return session
 
 
@@ -324,7 +327,7 @@ def open_client(
     mission: str,
     endpoint: str,
     name: str,
-    password: str | None,
+    identity: Identity | None,
     timeout_ms: int = CONNECT_TIMEOUT_MS,
 ) -> Bus:
     """The session of everyone else. Raises MissionError if the router does not appear in time."""
@@ -337,9 +340,8 @@ def open_client(
         "listen/endpoints": [],
         "transport/unicast/lowlatency": name.startswith(LOW_LATENCY),
     }
-    if password is not None:
-        settings["transport/auth/usrpwd"] = {"user": name, "password": password}
-        settings["id"] = session_id(password)
+    if identity is not None:
+        settings |= proof(name, identity)
     return Bus(_open(settings), mission, name)
 
 
@@ -347,7 +349,7 @@ def _open(settings: Mapping[str, Any]) -> zenoh.Session:
     threads = ROUTER_THREADS if settings["mode"] == "router" else ONE_THREAD
     os.environ.setdefault("ZENOH_RUNTIME", threads)
     config = zenoh.Config()
-    for key, value in {**_QUIET, "transport/link/tx/lease": LEASE_MS, **settings}.items():
+    for key, value in {**QUIET, "transport/link/tx/lease": LEASE_MS, **settings}.items():
         config.insert_json5(key, json.dumps(value))
     try:
         return zenoh.open(config)

@@ -12,14 +12,8 @@ from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.mission.processes import free_endpoint
 from onehop.node import bus
-from onehop.node.bus import (
-    ALIVE,
-    GONE,
-    Bus,
-    make_credentials,
-    open_client,
-    open_router,
-)
+from onehop.node.bus import ALIVE, GONE, Bus, open_client, open_router
+from onehop.node.identity import make_credentials
 from onehop.node.parts import PART_BYTES
 
 pytestmark = pytest.mark.live

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from onehop.analysis.message_traces import MessageTrace
 from onehop.analysis.report.report_data import ReportData
@@ -34,7 +34,14 @@ class Row:
     notes: list[RowNote] = field(default_factory=list)
 
 
-def elections(report: ReportData) -> list[tuple[LeadershipTerm, LeadershipTerm]]:
+class Led(Protocol):
+    """A mission of which it is known who led most of its team, and when."""
+
+    @property
+    def main_terms(self) -> list[LeadershipTerm]: ...
+
+
+def elections(report: Led) -> list[tuple[LeadershipTerm, LeadershipTerm]]:
     """Each change of who leads most of the team: (last roster of the old leader, first of the new)."""
     return [
         (before, after)

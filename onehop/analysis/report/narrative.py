@@ -1,15 +1,16 @@
 """A mission told in sentences: what happened, when, and why, for somebody who was not there."""
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import groupby
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 from onehop.analysis.report.election_rows import elections
-from onehop.analysis.report.report_data import ReportData
-from onehop.contracts.fault_section import fault_in_words, in_toml
+from onehop.analysis.timeline import LastSeen
+from onehop.contracts.fault_section import FaultSection, fault_in_words, in_toml
 from onehop.contracts.messages import LeadershipTerm
 from onehop.contracts.printable import in_words, printable
+from onehop.contracts.scenario import Scenario
 from onehop.contracts.team import loss_in_words
 
 MOST_NOTES = 50
@@ -29,14 +30,46 @@ _NAMED_LEADERS = 6
 
 
 class NarrativeEvent(NamedTuple):
-    """One sentence of the narrative. weight: 2 = turns the mission, 1 = ordinary, 0 = detail."""
+    """One sentence of the narrative. weight: 2 = turns the mission, 1 = ordinary, 0 = detail.
+
+    robot: whom it is about first of all, 0 for nobody.
+    """
 
     at_s: float
     weight: int
     text: str
+    robot: int = 0
 
 
-def narrative(report: ReportData) -> list[NarrativeEvent]:
+class Narrated(Protocol):
+    """What of a mission is told; see ReportData.
+
+    noted: time [s], robot, kind and data of each note. touched: time [s], robot, and the other or 0.
+    """
+
+    @property
+    def scenario(self) -> Scenario: ...
+    @property
+    def summary(self) -> dict[str, Any] | None: ...
+    @property
+    def robots(self) -> tuple[int, ...]: ...
+    @property
+    def end_s(self) -> float: ...
+    @property
+    def terms(self) -> list[LeadershipTerm]: ...
+    @property
+    def main_terms(self) -> list[LeadershipTerm]: ...
+    @property
+    def gone(self) -> list[LastSeen]: ...
+    @property
+    def begun(self) -> list[FaultSection]: ...
+    @property
+    def noted(self) -> Iterable[tuple[Any, ...]]: ...
+    @property
+    def touched(self) -> Iterable[tuple[Any, ...]]: ...
+
+
+def narrative(report: Narrated) -> list[NarrativeEvent]:
     """All events in order of time."""
     notes, going_on = _told_notes(report)
     events = [
@@ -46,17 +79,17 @@ def narrative(report: ReportData) -> list[NarrativeEvent]:
         *_columns(notes),
         *_losses_of_leaders(report, notes),
         *_handovers(report, notes),
-        *_departures(report),
         *_faults(report),
+        *_departures(report),
         *_collisions(report),
         *_ending(report),
     ]
     return sorted(events, key=lambda event: event.at_s)
 
 
-def summary_sentence(report: ReportData) -> str:
+def summary_sentence(report: Narrated) -> str:
     """The mission in one or two sentences."""
-    summary, robots = report.log.summary, report.robots
+    summary, robots = report.summary, report.robots
     team = f"A team of {len(robots)} robots" if len(robots) > 1 else "One robot"
     if summary is None:
         return f"{team} was under way; the log ends after {report.end_s:.0f} s, before the mission did."
@@ -93,16 +126,17 @@ class _Blanks(dict[str, str]):
         return "?"
 
 
-def _beginning(report: ReportData) -> Iterator[NarrativeEvent]:
+def _beginning(report: Narrated) -> Iterator[NarrativeEvent]:
     if report.terms:
         first = report.terms[0]
         if len(first.members) == 1:
-            yield NarrativeEvent(first.at_s, 1, f"Robot {first.leader} sets out alone.")
+            yield NarrativeEvent(first.at_s, 1, f"Robot {first.leader} sets out alone.", first.leader)
             return
         yield NarrativeEvent(
             first.at_s, 1,
             f"Robots {in_words(first.members)} gather around robot {first.leader}, the median of their "
             f"ids, in a {first.shape}.",
+            first.leader,
         )  # fmt: skip
 
 
@@ -115,13 +149,12 @@ class _Noted(NamedTuple):
     data: dict[str, Any]
 
 
-def _told_notes(report: ReportData) -> tuple[list[_Noted], list[NarrativeEvent]]:
+def _told_notes(report: Narrated) -> tuple[list[_Noted], list[NarrativeEvent]]:
     """Notes that the narrative is made of, and who noted one kind more often than that is told."""
     told: list[_Noted] = []
     going_on: list[NarrativeEvent] = []
     number: Counter[tuple[int, str]] = Counter()
-    rows = report.tables["notes"].rows("time_s", "robot", "kind", "data")
-    for note in map(_Noted._make, rows):
+    for note in map(_Noted._make, report.noted):
         if note.kind == "mode" and note.data.get("on") != "formed":
             continue
         number[note.robot, note.kind] += 1
@@ -129,7 +162,7 @@ def _told_notes(report: ReportData) -> tuple[list[_Noted], list[NarrativeEvent]]
             told.append(note)
         elif number[note.robot, note.kind] == MOST_NOTES + 1 and note.kind in _TOLD_KINDS:
             what = f"Robot {note.robot} notes {note.kind.replace('_', ' ')!r} again and again."
-            going_on.append(NarrativeEvent(note.at_s, 0, what))
+            going_on.append(NarrativeEvent(note.at_s, 0, what, note.robot))
     return told, going_on
 
 
@@ -138,7 +171,7 @@ def _sentences(notes: list[_Noted]) -> Iterator[NarrativeEvent]:
     for at_s, robot, kind, data in notes:
         if kind == "mode":
             yield NarrativeEvent(
-                at_s, 1, f"The formation stands: robot {robot} sets off towards the goal."
+                at_s, 1, f"The formation stands: robot {robot} sets off towards the goal.", robot
             )
         elif kind in _SENTENCES:
             weight, sentence = _SENTENCES[kind]
@@ -146,7 +179,7 @@ def _sentences(notes: list[_Noted]) -> Iterator[NarrativeEvent]:
             blanks["robot"] = str(robot)
             blanks["robots"] = _robots(data.get("robots", ()))
             blanks["why"] = loss_in_words(in_words(data.get("reason", "")))
-            yield NarrativeEvent(at_s, weight, sentence.format_map(blanks))
+            yield NarrativeEvent(at_s, weight, sentence.format_map(blanks), robot)
 
 
 _SENTENCES = {
@@ -176,12 +209,13 @@ def _columns(notes: list[_Noted]) -> Iterator[NarrativeEvent]:
 
 
 def _column(at_s: float, leader: int, until: str) -> NarrativeEvent:
-    return NarrativeEvent(at_s, 1, f"Too narrow for the shape: leader {leader} orders a column{until}.")
+    text = f"Too narrow for the shape: leader {leader} orders a column{until}."
+    return NarrativeEvent(at_s, 1, text, leader)
 
 
-def _losses_of_leaders(report: ReportData, notes: list[_Noted]) -> Iterator[NarrativeEvent]:
+def _losses_of_leaders(report: Narrated, notes: list[_Noted]) -> Iterator[NarrativeEvent]:
     """Lost_Leader of several robots within a Next period is one event; the election follows from it."""
-    period = report.log.scenario.team.next_period
+    period = report.scenario.team.next_period
     open_group: tuple[float, str, list[int]] | None = None
     for at_s, robot, _, data in (note for note in notes if note.kind == "lost_leader"):
         leader = in_words(data.get("leader", "?"))
@@ -195,21 +229,23 @@ def _losses_of_leaders(report: ReportData, notes: list[_Noted]) -> Iterator[Narr
         yield _lost_leader(report, *open_group)
 
 
-def _lost_leader(report: ReportData, at_s: float, leader: str, robots: list[int]) -> NarrativeEvent:
-    team = report.log.scenario.team
+def _lost_leader(report: Narrated, at_s: float, leader: str, robots: list[int]) -> NarrativeEvent:
+    team = report.scenario.team
     who = f"Robots {in_words(sorted(robots))} have" if len(robots) > 1 else f"Robot {robots[0]} has"
     silence = f"not heard leader {leader} for {team.leader_timeout:g} s"
     text = f"{who} {silence} and give{'s' if len(robots) == 1 else ''} it up"
     successor = _successor(report.terms, at_s, leader)
     if successor is None:
-        return NarrativeEvent(at_s, 2, f"{text}.")
+        return NarrativeEvent(at_s, 2, f"{text}.", robots[0])
     if len(successor.members) == 1:
-        return NarrativeEvent(at_s, 2, f"{text}. Robot {successor.leader} goes on alone.")
+        alone = f"{text}. Robot {successor.leader} goes on alone."
+        return NarrativeEvent(at_s, 2, alone, successor.leader)
     return NarrativeEvent(
         at_s, 2,
         f"{text}. Each strikes it from the roster and finds, without a vote, the same leader, "
         f"robot {successor.leader}, median of {in_words(successor.members)}, and shape, "
         f"{successor.shape}.",
+        successor.leader,
     )  # fmt: skip
 
 
@@ -218,7 +254,7 @@ def _successor(terms: list[LeadershipTerm], at_s: float, leader: str) -> Leaders
     return next(later, None)
 
 
-def _handovers(report: ReportData, notes: list[_Noted]) -> Iterator[NarrativeEvent]:
+def _handovers(report: Narrated, notes: list[_Noted]) -> Iterator[NarrativeEvent]:
     """Changes of the leader without a loss of the old one: a new roster has another median."""
     lost = [(note.at_s, note.data.get("leader")) for note in notes if note.kind == "lost_leader"]
     for before, after in elections(report)[:MOST_HANDOVERS]:
@@ -228,36 +264,39 @@ def _handovers(report: ReportData, notes: list[_Noted]) -> Iterator[NarrativeEve
             after.at_s, 2,
             f"Robot {after.leader}, median of {in_words(after.members)}, leads from now on; "
             f"shape: {after.shape}.",
+            after.leader,
         )  # fmt: skip
 
 
-def _departures(report: ReportData) -> Iterator[NarrativeEvent]:
+def _departures(report: Narrated) -> Iterator[NarrativeEvent]:
     for one in report.gone:
         leads = [term.leader for term in report.main_terms if term.at_s < one.at_s]
         part = ", the leader," if leads and leads[-1] == one.robot else ""
-        yield NarrativeEvent(one.at_s, 2, f"Robot {one.robot}{part} leaves the mission: {one.why}.")
+        text = f"Robot {one.robot}{part} leaves the mission: {one.why}."
+        yield NarrativeEvent(one.at_s, 2, text, one.robot)
 
 
-def _faults(report: ReportData) -> Iterator[NarrativeEvent]:
+def _faults(report: Narrated) -> Iterator[NarrativeEvent]:
     """Each fault as it began, with the line that repeats it in a scenario."""
     for fault in report.begun[:MOST_FAULTS]:
         words = f"Fault: {fault_in_words(fault)}. In a scenario: faults = [{in_toml(fault)}]"
-        yield NarrativeEvent(fault.at_s or 0.0, 2, printable(words, _LONGEST_FAULT))
+        robot = fault.robots[0] if fault.robots else 0
+        yield NarrativeEvent(fault.at_s or 0.0, 2, printable(words, _LONGEST_FAULT), robot)
 
 
-def _collisions(report: ReportData) -> Iterator[NarrativeEvent]:
+def _collisions(report: Narrated) -> Iterator[NarrativeEvent]:
     seen: set[tuple[int, int]] = set()
-    for at_s, robot, other in report.tables["contacts"].rows("time_s", "robot", "other"):
+    for at_s, robot, other in report.touched:
         pair = min(robot, other), max(robot, other)
         if pair not in seen:
             seen.add(pair)
             yield NarrativeEvent(
-                at_s, 2, f"Robot {robot} touches {f'robot {other}' if other else 'an obstacle'}."
+                at_s, 2, f"Robot {robot} touches {f'robot {other}' if other else 'an obstacle'}.", robot
             )
 
 
-def _ending(report: ReportData) -> Iterator[NarrativeEvent]:
-    summary = report.log.summary
+def _ending(report: Narrated) -> Iterator[NarrativeEvent]:
+    summary = report.summary
     if summary is not None:
         yield NarrativeEvent(
             summary["sim_s"], 2, f"The mission ends: {summary['outcome']}, {summary['reason']}."

@@ -1,6 +1,8 @@
 """Everything that the report draws from."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from onehop.analysis.log import Log
 from onehop.analysis.message_traces import MessageTrace, join
@@ -16,6 +18,7 @@ from onehop.analysis.timeline import (
 )
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.messages import LeadershipTerm
+from onehop.contracts.scenario import Scenario
 from onehop.wire.audit import audit
 
 _TABLES = (
@@ -49,6 +52,24 @@ class ReportData:
     @property
     def robots(self) -> tuple[int, ...]:
         return self.log.robots
+
+    @property
+    def scenario(self) -> Scenario:
+        return self.log.scenario
+
+    @property
+    def summary(self) -> dict[str, Any] | None:
+        return self.log.summary
+
+    @property
+    def noted(self) -> Iterator[tuple[Any, ...]]:
+        """Time [s], robot, kind and data of each note."""
+        return self.tables["notes"].rows("time_s", "robot", "kind", "data")
+
+    @property
+    def touched(self) -> Iterator[tuple[Any, ...]]:
+        """Time [s], robot, and the other robot or 0, of each contact."""
+        return self.tables["contacts"].rows("time_s", "robot", "other")
 
     @property
     def dead(self) -> dict[int, LastSeen]:

@@ -22,6 +22,7 @@ from onehop.contracts.printable import LONGEST
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.values import WIRE_VERSION, Wire
 from onehop.node import bus, parts, startup
+from onehop.node.identity import session_id
 from onehop.node.rights import rights
 from onehop.wire.codec import decode, encode
 from onehop.wire.journal import Digest, Journal
@@ -172,7 +173,7 @@ def test_the_session_is_opened_as_our_own_robots_open_it(monkeypatch: pytest.Mon
             return lambda *_, **__: None
 
     def take(settings: Mapping[str, Any]) -> Any:
-        opened.update({**bus._QUIET, **settings})
+        opened.update({**bus.QUIET, **settings})
         return Nothing()
 
     monkeypatch.setattr(bus, "_open", take)
@@ -197,7 +198,7 @@ def test_the_numbers_are_those_of_the_code() -> None:
     assert f"exit with status {startup.PROGRAM_FAILED}" in PAGE
     assert f"{startup.WORLD_IS_GONE}: the world has gone" in PAGE
     assert f"`{startup.PASSWORD_VARIABLE}`" in PAGE
-    assert bus.session_id("x") == "1" + hashlib.sha256(b"x").hexdigest()[:31]
+    assert session_id("x") == "1" + hashlib.sha256(b"x").hexdigest()[:31]
 
 
 def test_the_example_is_the_action_that_it_says_it_is() -> None:
