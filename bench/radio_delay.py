@@ -19,17 +19,9 @@ from multiprocessing.queues import Queue
 from onehop.contracts import topics
 from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.geometry import Pose, Twist
-from onehop.contracts.messages import (
-    BROADCAST,
-    Handed,
-    Heard,
-    Placed,
-    Presence,
-    Transmission,
-    TransmitRequest,
-    Truth,
-)
+from onehop.contracts.messages import BROADCAST, Presence, Transmission, TransmitRequest, Truth
 from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.realtime import Handed, Heard, Placed
 from onehop.mission.processes import free_endpoint
 from onehop.node import startup
 from onehop.node.bus import Bus, open_client, open_router

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from onehop.contracts.messages import Action, Lateness, Truth
+from onehop.contracts.messages import Action, Truth
+from onehop.contracts.realtime import Lateness
 from onehop.mission.operator import STOPPED
 from onehop.wire.codec import decode
 from onehop.wire.log_reader import LogFile

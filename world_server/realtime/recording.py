@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from onehop.contracts import topics
-from onehop.contracts.messages import Heard, Lateness
+from onehop.contracts.realtime import Heard, Lateness
 from onehop.node.bus import Bus
 from onehop.wire.batch import TickMessages, pack_ticks
 from onehop.wire.codec import decode, encode

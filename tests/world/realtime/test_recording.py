@@ -6,7 +6,8 @@ import pytest
 
 from onehop.contracts import topics
 from onehop.contracts.geometry import Twist
-from onehop.contracts.messages import Action, Heard, Inbox, Lateness, Reception
+from onehop.contracts.messages import Action, Inbox, Reception
+from onehop.contracts.realtime import Heard, Lateness
 from onehop.wire.batch import unpack_ticks
 from onehop.wire.codec import decode, encode
 from world_server.realtime import recording
