@@ -43,7 +43,7 @@ def main() -> None:
         as_robot()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--robots", type=int, nargs="+", default=[6, 24, 50])
-    parser.add_argument("--seconds", type=float, default=60.0)
+    parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--speed", type=float, default=1.0)
     options = parser.parse_args()
     found = [measure(robots, options.seconds, options.speed) for robots in options.robots]

@@ -55,15 +55,21 @@ def _record(options: argparse.Namespace) -> int:
             raise
 
 
+AWAY_S = 10.0
+"""How long the world may be away in real time, until it is given up [s]: this process may have been cut
+off from it, or stopped for longer than a lease."""
+
+
 class _Recorder:
     def __init__(self, bus: Bus, briefing: LogBriefing, options: argparse.Namespace) -> None:
         self._bus = bus
         self._folder: Path = options.out
         self._path = None if options.no_file else options.out / LOG
         self._log: LogWriter | None = None
+        files = dict(briefing.files)
+        bundle = bundle_from_json(briefing.scenario_json, files, "briefing", briefing.programs)
+        self._in_real_time = bundle.scenario.clock.is_realtime
         if self._path is not None:
-            files = dict(briefing.files)
-            bundle = bundle_from_json(briefing.scenario_json, files, "briefing", briefing.programs)
             with explained(self._path, REMEDY):
                 self._log = LogWriter(self._path, bundle, briefing.driver)
         self._journal = Journal(self._write)
@@ -78,11 +84,7 @@ class _Recorder:
     def serve(self) -> int:
         """Record until the end of the mission, or of the world."""
         self._bus.announce(topics.RECORDER)
-        while self._end is None:
-            what, data = self._bus.receive()
-            if what == topics.alive(topics.WORLD) and data == GONE:
-                break
-            self._take(what, data)
+        self._record_until_end()
         deadline = time.monotonic() + LAST_TICKS_S
         while self._end is not None and self._journal.last_tick < self._end.last_tick:
             received = self._bus.receive_by(deadline)
@@ -91,13 +93,29 @@ class _Recorder:
             self._take(*received)
         return self._finish()
 
+    def _record_until_end(self) -> None:
+        """Until the world says that it is over, or is gone for good."""
+        away_until: float | None = None
+        while self._end is None:
+            received = self._bus.receive() if away_until is None else self._bus.receive_by(away_until)
+            if received is None:
+                return
+            what, data = received
+            if what == topics.alive(topics.WORLD):
+                if data == GONE and not self._in_real_time:
+                    return
+                away_until = time.monotonic() + AWAY_S if data == GONE else None
+            else:
+                self._take(what, data)
+
     def _take(self, what: str, data: bytes) -> None:
         if what == topics.END:
             self._end = decode(End, data)
         elif what == topics.TICKS:
             with self._writing():
                 for tick, messages in unpack_ticks(data):
-                    self._journal.add(tick, messages)
+                    if tick > self._journal.last_tick:  # else it has come again
+                        self._journal.add(tick, messages)
                 if self._log is not None:
                     self._log.flush()
             self._acknowledge(self._journal.last_tick.to_bytes(8, "little"))

@@ -9,7 +9,7 @@ import time
 from collections.abc import Callable, Iterable
 
 from onehop.contracts import topics
-from onehop.contracts.messages import Handed, Heard, Placed
+from onehop.contracts.realtime import Handed, Heard, Placed
 from onehop.node import startup
 from onehop.node.bus import GONE, Bus
 from onehop.wire.batch import pack_tick

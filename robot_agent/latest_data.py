@@ -6,7 +6,8 @@ went into it, so that the step can be re-executed from the log.
 
 from collections.abc import Callable
 
-from onehop.contracts.messages import Acted, Heard, Observation, percept
+from onehop.contracts.messages import Observation, percept
+from onehop.contracts.realtime import Acted, Heard
 from onehop.programs.host import Host
 from onehop.wire.codec import decode, encode
 from onehop.wire.heard import inbox_of

@@ -34,18 +34,24 @@ def main() -> int:
     with startup.connect(options, name) as bus:
         bus.watch(topics.WORLD)
         arrival = bus.publisher(topics.by(name, topics.ARRIVAL))
-        briefing = decode(Briefing, startup.briefing(bus, name, lambda: arrival(b"")))
         search_in(options.programs)
-        host = Host(briefing)
-        startup.calm_garbage_collector()
-        return _serve(bus, host, name, briefing.silence_s)
+        while True:
+            briefing = decode(Briefing, startup.briefing(bus, name, lambda: arrival(b"")))
+            host = Host(briefing)
+            startup.calm_garbage_collector()
+            status = _serve(bus, host, name, briefing.silence_s)
+            if status is not None:
+                return status
+            bus.withdraw()
 
 
 REUNION_S = 10.0
-"""How long a process that was stopped looks for the world [s], when its session has been given up."""
+"""How long a process that was stopped, or in real time cut off, looks for the world [s] when its session
+has been given up. Without having been told of a stop it joins again, as one that knows nothing."""
 
 
-def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int:
+def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
+    """Take part; the exit status, or None if this robot was cut off and may join again."""
     put = bus.publisher(topics.by(name, topics.OUT))
     put_awake = bus.publisher(topics.by(name, topics.AWAKE))
     put_failure = bus.publisher(topics.by(name, topics.FAILED))
@@ -92,10 +98,11 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int:
             os.kill(os.getpid(), signal.SIGKILL)
         elif what == topics.END:
             return 0
-        elif (what, data) == (topics.alive(topics.WORLD), GONE) and not (
-            will_be_stopped and _finds_world(bus)
-        ):
-            return startup.WORLD_IS_GONE
+        elif (what, data) == (topics.alive(topics.WORLD), GONE):
+            if not ((will_be_stopped or latest.is_used) and _finds_world(bus)):
+                return startup.WORLD_IS_GONE
+            if not will_be_stopped:
+                return None
 
 
 def _finds_world(bus: Bus) -> bool:

@@ -67,7 +67,7 @@ def real_time(parts: Parts) -> RealTime:
     def lied(robot: int) -> None:
         robots.refuse(robot, "named receptions that it was not given")
 
-    recording = RealTimeRecording(bus, mail, clock.period_ns, lied)
+    recording = RealTimeRecording(bus, mail, roll, clock.period_ns, lied)
     radio = RealTimeRadio(bus, mail, roll, schedule, recording.take, clock.silence_s)
     robots = RealTimeRobots(bus, mail, roll, ids, clock.silence_s, radio.hand_over)
     return RealTime(

@@ -48,6 +48,11 @@ class Mailbox:
         if not self._mission_is_over and (self._break is None or due < self._break[0]):
             self._break = due, reason
 
+    def call_off(self, reason: str) -> None:
+        """What was said to be a reason is none any more."""
+        if self._break is not None and self._break[1] == reason:
+            self._break = None
+
     def close_mission(self) -> None:
         """From here on nothing breaks it off any more."""
         self._mission_is_over = True

@@ -20,10 +20,13 @@ from world_server.briefings import Briefings
 from world_server.clocks import Parts, lock_step, real_time
 from world_server.core.world import World
 from world_server.mailbox import Mailbox, MissionBrokenError
-from world_server.roll_call import RollCall
+from world_server.roll_call import ACCOUNT_S, RollCall
 
 START_S = 30.0
 """How long the start of all processes may take [s], if nothing else is said."""
+
+RECORDER_AWAY_S = 10.0
+"""How long the recorder may be cut off in real time [s]: the world keeps what it is to write."""
 
 FAREWELL_S = 30.0
 """How long the world stays, as the router of the bus, for those who have yet to finish [s]."""
@@ -72,12 +75,12 @@ def _host(
     bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str, start_s: float
 ) -> None:
     """Run the mission from the first process's arrival to the last one's farewell."""
-    robots = bundle.scenario.team.robots
+    robots, clock = bundle.scenario.team.robots, bundle.scenario.clock
     mail = Mailbox(bus)
-    roll = RollCall(mail, robots)
+    roll = RollCall(mail, robots, RECORDER_AWAY_S if clock.is_realtime else ACCOUNT_S)
     briefings = Briefings(bundle, walls, driver, roll.incarnation)
     open_briefings = partial(bus.answering, topics.config("*"), briefings.answer)
-    make = real_time if bundle.scenario.clock.is_realtime else lock_step
+    make = real_time if clock.is_realtime else lock_step
     mission = make(Parts(bus, mail, roll, world, bundle.scenario, open_briefings))
     recording = mission.recording
     tell_the_end = _farewell(bus, roll)

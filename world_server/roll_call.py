@@ -6,7 +6,7 @@ launcher learns how a process ended, and says so; a token that vanishes says onl
 gone, so its loss counts a moment later.
 """
 
-from collections.abc import Iterable, Set
+from collections.abc import Callable, Iterable, Set
 from functools import partial
 
 from onehop.contracts import topics
@@ -22,10 +22,15 @@ INDISPENSABLE = frozenset((topics.RADIO, topics.RECORDER))
 
 
 class RollCall:
-    """Presence of radio, recorder and robots. robots: ids of the team."""
+    """Presence of radio, recorder and robots. robots: ids of the team.
 
-    def __init__(self, mail: Mailbox, robots: Iterable[int]) -> None:
+    recorder_away_s: how long the recorder may be gone from the bus while its process lives [s].
+    """
+
+    def __init__(self, mail: Mailbox, robots: Iterable[int], recorder_away_s: float = ACCOUNT_S) -> None:
         self._mail = mail
+        self._away_s = {topics.RECORDER: recorder_away_s}
+        self._on_return: dict[str, Callable[[], None]] = {}
         self.everyone = (topics.RADIO, topics.RECORDER, *map(topics.robot_name, robots))
         self._present: set[str] = set()
         self._awaited: frozenset[str] = frozenset()
@@ -52,6 +57,10 @@ class RollCall:
         """The process of this name is about to be started again."""
         self._incarnations[name] = incarnation
 
+    def when_present(self, name: str, act: Callable[[], None]) -> None:
+        """Call `act` whenever this process comes to the bus, or comes back."""
+        self._on_return[name] = act
+
     def gather(self, names: Iterable[str], limit_s: float) -> None:
         """Wait until all of these are present. Raises MissionBrokenError when one dies or is late."""
         self._awaited = frozenset(names)
@@ -64,13 +73,15 @@ class RollCall:
         return name in INDISPENSABLE or name in self._awaited
 
     def _on_token(self, name: str, data: bytes) -> None:
+        reason = f"the {name} process is gone from the bus: killed, stopped or cut off"
         if data == ALIVE:
             self._present.add(name)
+            self._mail.call_off(reason)
+            self._on_return.get(name, lambda: None)()
             return
         self._present.discard(name)
         if self._is_needed(name):
-            reason = f"the {name} process is gone from the bus: killed, stopped or cut off"
-            self._mail.break_off(reason, after_s=ACCOUNT_S)
+            self._mail.break_off(reason, after_s=self._away_s.get(name, ACCOUNT_S))
 
     def _on_death(self, data: bytes) -> None:
         death = decode(Death, data)

@@ -84,7 +84,7 @@ def run(
     ] = None,
     speed: Annotated[
         float | None,
-        Option(help="In real time: simulated seconds in one second.", callback=within(numbers.SPEED)),
+        Option(help="Simulated seconds a second: real time.", callback=within(numbers.SPEED)),
     ] = None,
     seed: Annotated[
         int | None, Option(help="Seed of everything random.", callback=within(numbers.SEED))

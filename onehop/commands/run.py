@@ -129,11 +129,12 @@ def _require_what_is_shown(driver: str, record: bool) -> None:
 
 
 def clock_settings(clock: str | None, speed: float | None) -> list[str]:
-    """--clock and --speed as settings of the scenario. Raises InputError."""
+    """--clock and --speed, which only real time has, as settings of the scenario. Raises InputError."""
     if speed is not None and clock == "lockstep":
         raise InputError("--speed", "lock-step is as fast as it can be", "--clock realtime with it")
-    settings = [] if clock is None else [f'clock.mode="{clock}"']
-    return settings if speed is None else [*settings, f"clock.speed={speed!r}"]
+    if speed is not None:
+        return ['clock.mode="realtime"', f"clock.speed={speed!r}"]
+    return [] if clock is None else [f'clock.mode="{clock}"']
 
 
 def _fresh_folder(bundle: Bundle) -> Path:

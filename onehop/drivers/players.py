@@ -13,7 +13,6 @@ from onehop.contracts.briefings import robot_briefing
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import (
     Action,
-    Heard,
     Inbox,
     Observation,
     RadioRecord,
@@ -21,6 +20,7 @@ from onehop.contracts.messages import (
     Truth,
     percept,
 )
+from onehop.contracts.realtime import Heard
 from onehop.contracts.scenario import Scenario
 from onehop.maps.walls import WallMap
 from onehop.programs.host import Host, ProgramError

@@ -89,6 +89,7 @@ class Bus:
         self._own = heard.replace("**", topics.WORLD + "/" if name == topics.WORLD else "")
         self._parts = Parts(peer_limits.LONGEST_MESSAGE_BYTES)
         self._kept: list[Any] = []
+        self._token: Any = None
         self._called: list[Any] = []
         self._callback_ends: list[SimpleQueue[threading.Thread]] = []
         self._alarm: Alarm | None = None
@@ -178,7 +179,13 @@ class Bus:
 
     def announce(self, name: str) -> None:
         """Declare this process alive. Do it last: whoever sees the token may send at once."""
-        self._kept.append(self._session.liveliness().declare_token(self._key(topics.alive(name))))
+        self._token = self._session.liveliness().declare_token(self._key(topics.alive(name)))
+
+    def withdraw(self) -> None:
+        """Take the announcement back: this process is there, and not ready."""
+        if self._token is not None:
+            self._token.undeclare()
+            self._token = None
 
     def receive(self) -> tuple[str, bytes]:
         """The next message or liveliness change, whenever it comes.

@@ -4,8 +4,9 @@ from collections.abc import Iterable
 
 from msgspec.structs import replace
 
-from onehop.contracts.messages import Heard, Inbox
+from onehop.contracts.messages import Inbox
 from onehop.contracts.neighbour import Neighbour
+from onehop.contracts.realtime import Heard
 
 
 def inbox_of(tick: int, time_ns: int, heard: Iterable[Heard]) -> Inbox:

@@ -4,7 +4,8 @@ from typing import TypeAlias, TypeVar
 
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import Action, Inbox, Lateness, Observation, RadioRecord, Truth
+from onehop.contracts.messages import Action, Inbox, Observation, RadioRecord, Truth
+from onehop.contracts.realtime import Lateness
 from onehop.wire.codec import decode
 from onehop.wire.selection import Selected
 

@@ -10,14 +10,9 @@ from collections.abc import Iterable
 
 from msgspec.structs import replace
 
-from onehop.contracts.messages import (
-    HandOver,
-    Heard,
-    Intake,
-    RadioRecord,
-    TransmitRequest,
-    Truth,
-)
+from onehop.contracts.intake import HandOver, Intake
+from onehop.contracts.messages import RadioRecord, TransmitRequest, Truth
+from onehop.contracts.realtime import Heard
 from radio_proxy.core.bounds import Carrier
 
 Due = list[tuple[int, Heard]]

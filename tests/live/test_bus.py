@@ -72,6 +72,29 @@ def test_a_robot_cannot_speak_for_another_or_around_the_radio(network: Network) 
         assert _heard(network.clients[name]) == []
 
 
+def test_the_radio_tells_robots_what_they_have_received_and_nothing_else(network: Network) -> None:
+    radio = network.clients["radio"]
+    for name in ("robot-1", "robot-2", "recorder", "operator"):
+        for what in (topics.HEARD, topics.OBSERVATION, topics.PERCEPT, topics.KILL, topics.PART):
+            radio.publisher(topics.to(name, what))(b"said by the radio")
+    heard = [_heard(network.clients[name]) for name in ("robot-1", "robot-2", "recorder", "operator")]
+    assert heard == [[("heard", b"said by the radio")]] * 2 + [[], []]
+
+
+def test_a_wait_ends_at_its_deadline_whatever_it_was_told_before(network: Network) -> None:
+    """The alarm of an earlier wait may ring later, and does not end this one."""
+    world = network.world
+    world.tell_self("word")
+    assert world.receive_by(time.monotonic() + 0.15) == ("world/word", b"")
+    overdue = []
+    for patience_s in (0.4, 0.02, 0.02, 0.2, 0.02):
+        deadline = time.monotonic() + patience_s
+        assert world.receive_by(deadline) is None
+        overdue.append(time.monotonic() - deadline)
+    assert min(overdue) >= 0.0
+    assert sorted(overdue)[2] < 0.05
+
+
 def test_a_robot_hears_nothing_that_is_not_for_it(network: Network) -> None:
     spy = network.clients["robot-2"]._session
     keys = ("m/to/robot-1/**", "m/from/**", "m/to/radio/**", "m/**")

@@ -41,6 +41,7 @@ class _Bus:
         self.takers: dict[str, Callable[[bytes], None]] = {}
         self.readers: dict[str, Callable[[bytes], None]] = {}
         self.shut_out = self.read_stray = lambda _: None
+        self.when_present = lambda *_: None
 
     def publisher(self, key: str, **_: Any) -> Callable[[bytes], None]:
         return lambda data: self.takers[key](data)
@@ -65,7 +66,7 @@ class Jitter:
         ids = scenario.team.robots
         roll: Any = type("Roll", (), {"present": {topics.robot_name(i) for i in ids}})
         self._robots = RealTimeRobots(bus, bus, roll, ids, 1e9, self._hand_over)
-        self._recording = RealTimeRecording(bus, bus, scenario.clock.period_ns, self._on_lie)
+        self._recording = RealTimeRecording(bus, bus, bus, scenario.clock.period_ns, self._on_lie)
         self._processes: dict[int, tuple[int, LatestData]] = {}
         self._told: list[WireMessage] = []
         for i in ids:

@@ -5,15 +5,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from onehop.contracts.briefings import RadioBriefing
-from onehop.contracts.messages import (
-    BROADCAST,
-    Corruption,
-    Heard,
-    RadioRecord,
-    Transmission,
-    TransmitRequest,
-)
+from onehop.contracts.messages import BROADCAST, Corruption, RadioRecord, Transmission, TransmitRequest
 from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.realtime import Heard
 from radio_proxy.core.bounds import make_radio
 from radio_proxy.core.continuous import ContinuousRadio
 from tests.radio.missions import PERIOD, Mission, line, message

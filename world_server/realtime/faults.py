@@ -17,6 +17,10 @@ from world_server.mailbox import Mailbox
 from world_server.process_faults import RESTART_S
 from world_server.roll_call import RollCall
 
+WAKE_S = 10.0
+"""For how long a process that goes on may be away from the bus [s]: if it was stopped for longer than a
+lease its session has been given up, and comes back by itself."""
+
 
 class RealTimeFaults:
     """What faults do to processes.
@@ -48,13 +52,14 @@ class RealTimeFaults:
         self._stopped: set[int] = set()
         self._ending: dict[int, float] = {}
         self._starting: dict[int, float] = {}
+        self._waking: dict[int, float] = {}
         for i in robots:
             mail.read(topics.robot_name(i), topics.AWAKE, lambda _: None)
 
     @property
     def starting(self) -> Set[int]:
-        """Robots that take part, and whose process is yet to come."""
-        return self._ending.keys() | self._starting.keys()
+        """Robots that take part, and whose process is yet to come, or to come back."""
+        return self._ending.keys() | self._starting.keys() | self._waking.keys()
 
     def carry_out(self, truth: Truth, arrived: Set[int]) -> None:
         """Begin to do to the processes what begins and ends with this truth.
@@ -67,6 +72,7 @@ class RealTimeFaults:
                 self._end(departure.robot)
                 self._ending.pop(departure.robot, None)
                 self._starting.pop(departure.robot, None)
+                self._waking.pop(departure.robot, None)
         for fault in truth.faults:
             if fault.kind == "restart":
                 for robot in fault.robots:
@@ -79,6 +85,7 @@ class RealTimeFaults:
         for robot in sorted(self._stopped.difference(truth.stopped)):
             self._stopped.discard(robot)
             self._tell(topics.CONTINUE, robot)
+            self._waking[robot] = time.monotonic() + WAKE_S
 
     def go_on(self) -> dict[int, str]:
         """What has come of it meanwhile; robots whose process did not come again, and why they leave."""
@@ -93,6 +100,9 @@ class RealTimeFaults:
             elif now_s > deadline_s:
                 self._ending[robot] = now_s + RESTART_S
                 self._tell(topics.KILL, robot)  # a process of somebody else's making need not obey
+        for robot, deadline_s in list(self._waking.items()):
+            if now_s > deadline_s or self._roll.has_died(topics.robot_name(robot)):
+                del self._waking[robot]
         failed: dict[int, str] = {}
         for robot, deadline_s in list(self._starting.items()):
             name = topics.robot_name(robot)

@@ -5,7 +5,8 @@ from collections.abc import Callable
 
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import Handed, Placed, TransmitRequest, Truth
+from onehop.contracts.messages import TransmitRequest, Truth
+from onehop.contracts.realtime import Handed, Placed
 from onehop.node.bus import Bus
 from onehop.wire.batch import TickMessages, unpack_tick
 from onehop.wire.codec import encode

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 
 from onehop.contracts import topics
-from onehop.contracts.messages import Heard, Lateness
+from onehop.contracts.realtime import Heard, Lateness
 from onehop.node.bus import Bus
 from onehop.wire.batch import TickMessages, pack_ticks
 from onehop.wire.codec import decode, encode
@@ -17,6 +17,7 @@ from onehop.wire.heard import inbox_of
 from onehop.wire.journal import WireMessage
 from world_server.mailbox import Mailbox
 from world_server.realtime.robots import Answers, Given
+from world_server.roll_call import RollCall
 
 BATCH_TICKS = 3
 """Ticks that go to the recorder at once."""
@@ -56,7 +57,14 @@ class RealTimeRecording:
     last_tick: the last one that was sent. left_out: ticks that the recorder was too slow for.
     """
 
-    def __init__(self, bus: Bus, mail: Mailbox, period_ns: int, on_lie: Callable[[int], None]) -> None:
+    def __init__(
+        self,
+        bus: Bus,
+        mail: Mailbox,
+        roll: RollCall,
+        period_ns: int,
+        on_lie: Callable[[int], None],
+    ) -> None:
         self._put_ticks = bus.publisher(topics.to(topics.RECORDER, topics.TICKS), express=False)
         self._period_ns = period_ns
         self._on_lie = on_lie
@@ -64,11 +72,12 @@ class RealTimeRecording:
         self._stores: dict[int, _Store] = {}
         self._waiting: deque[tuple[int, TickMessages]] = deque()
         self._waiting_bytes = 0
-        self._under_way: deque[tuple[int, int]] = deque()
+        self._under_way: deque[tuple[int, int, bytes]] = deque()
         self._under_way_bytes = 0
         self.last_tick = -1
         self.left_out = 0
         mail.read(topics.RECORDER, topics.RECORDED, self._on_recorded)
+        roll.when_present(topics.RECORDER, self._send_again)
 
     def begin(self, tick: int, messages: list[WireMessage]) -> None:
         """A tick begins with its truth and observations."""
@@ -150,9 +159,15 @@ class RealTimeRecording:
                 batch.append(tick)
             self._waiting_bytes -= bytes_of_batch
             self.last_tick = batch[-1][0]
-            self._under_way.append((self.last_tick, bytes_of_batch))
+            data = pack_ticks(batch)
+            self._under_way.append((self.last_tick, bytes_of_batch, data))
             self._under_way_bytes += bytes_of_batch
-            self._put_ticks(pack_ticks(batch))
+            self._put_ticks(data)
+
+    def _send_again(self) -> None:
+        """The recorder is back: what was under way to it may be lost. It knows what it has."""
+        for _, _, data in self._under_way:
+            self._put_ticks(data)
 
     def _on_recorded(self, data: bytes) -> None:
         in_file = int.from_bytes(data, "little")

@@ -14,7 +14,8 @@ from functools import partial
 from onehop.contracts import topics
 from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import Acted, Action, TransmitRequest, Truth, running
+from onehop.contracts.messages import Action, TransmitRequest, Truth, running
+from onehop.contracts.realtime import Acted
 from onehop.node.bus import Bus
 from onehop.wire.codec import decode
 from onehop.wire.spoken import action_in, failed

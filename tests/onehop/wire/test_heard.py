@@ -1,7 +1,8 @@
 """What a robot has heard in real time, as one inbox."""
 
-from onehop.contracts.messages import Heard, Reception
+from onehop.contracts.messages import Reception
 from onehop.contracts.neighbour import Neighbour
+from onehop.contracts.realtime import Heard
 from onehop.wire.heard import inbox_of
 
 

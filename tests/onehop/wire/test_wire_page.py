@@ -14,7 +14,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 import msgspec
 import pytest
 
-from onehop.contracts import briefings, messages, sections, team, topics
+from onehop.contracts import briefings, messages, realtime, sections, team, topics
 from onehop.contracts.arrays import Ranges
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.neighbour import Neighbour
@@ -38,8 +38,8 @@ LAYOUTS: dict[str, type] = {
     "Pose": Pose,
     "Twist": Twist,
     "Inbox": messages.Inbox,
-    "Heard": messages.Heard,
-    "Acted": messages.Acted,
+    "Heard": realtime.Heard,
+    "Acted": realtime.Acted,
     "Reception": messages.Reception,
     "Neighbour": Neighbour,
     "Action": messages.Action,

@@ -6,7 +6,8 @@ import pytest
 
 from onehop.contracts import topics
 from onehop.contracts.geometry import Twist
-from onehop.contracts.messages import Action, Heard, Inbox, Lateness, Reception
+from onehop.contracts.messages import Action, Inbox, Reception
+from onehop.contracts.realtime import Heard, Lateness
 from onehop.wire.batch import unpack_ticks
 from onehop.wire.codec import decode, encode
 from world_server.realtime import recording
@@ -29,6 +30,9 @@ class Wire:
     def read(self, name: str, what: str, reader: Callable[[bytes], None]) -> None:
         self.readers[topics.by(name, what)] = reader
 
+    def when_present(self, _: str, act: Callable[[], None]) -> None:
+        self.come_back = act
+
     def ticks(self) -> dict[int, dict[str, bytes]]:
         """Everything that was recorded."""
         return {tick: dict(messages) for data in self.put for tick, messages in unpack_ticks(data)}
@@ -42,7 +46,7 @@ class World:
 
     def __init__(self) -> None:
         self.wire, self.lies = Wire(), []  # type: tuple[Wire, list[int]]
-        self.recording = RealTimeRecording(self.wire, self.wire, PERIOD, self.lies.append)  # type: ignore[arg-type]
+        self.recording = RealTimeRecording(self.wire, self.wire, self.wire, PERIOD, self.lies.append)  # type: ignore[arg-type]
 
     def tick(self, tick: int, answers: int | None, heard: tuple[int, ...] = ()) -> None:
         """A tick begins and ends; robot 1 answers the observation of another."""
@@ -133,3 +137,18 @@ def test_what_does_not_fit_into_the_worlds_memory_is_left_out_and_counted(
     ticks = sorted(world.wire.ticks())
     assert world.recording.left_out == 30 - len(ticks) > 0
     assert ticks == list(range(len(ticks)))
+
+
+def test_a_recorder_that_comes_back_is_sent_again_what_it_has_not_acknowledged(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(recording, "UNDER_WAY_BYTES", 120)
+    world = World()
+    for tick in range(30):
+        world.tick(tick, None)
+        world.account(tick)
+    world.wire.acknowledge(5)
+    sent = world.wire.ticks().keys()
+    world.wire.put.clear()
+    world.wire.come_back()
+    assert sorted(world.wire.ticks()) == [tick for tick in sorted(sent) if tick > 5]

@@ -9,7 +9,6 @@ from onehop.contracts import topics
 from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import (
     BROADCAST,
-    Acted,
     Action,
     Presence,
     Slow,
@@ -17,6 +16,7 @@ from onehop.contracts.messages import (
     TransmitRequest,
     Truth,
 )
+from onehop.contracts.realtime import Acted
 from onehop.wire.codec import encode
 from world_server.realtime.robots import RealTimeRobots
 
