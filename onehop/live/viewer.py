@@ -30,8 +30,8 @@ from onehop.live.requests import (
 from onehop.live.source import Source
 from onehop.live.watchers import Watchers
 
-FRAME_S = 1.0 / 30.0
-"""Least time between two frames [s]: 30 a second look smooth, and the page moves robots in between."""
+FRAME_S = 1.0 / 25.0
+"""Least time between two frames [s]: 25 a second look smooth, since the page moves robots in between."""
 
 EVENTS_S = 0.25
 """Least time between two looks at the narrative [s]: a team in trouble notes something every tick."""
