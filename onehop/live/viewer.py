@@ -28,6 +28,7 @@ from onehop.live.requests import (
     fault_of,
 )
 from onehop.live.source import Source
+from onehop.live.story import CHARTS
 from onehop.live.watchers import Watchers
 
 FRAME_S = 1.0 / 25.0
@@ -213,6 +214,9 @@ class Viewer:
         story = self._source.story
         if story is None:
             return
+        names = [printable(name, 40) for name in story.names[:CHARTS]]
+        if names != self._sent.get("names", []):
+            self._sent["names"] = reply["names"] = names
         if len(story.samples) > self._samples:
             new = story.samples[self._samples : self._samples + MOST_SAMPLES]
             reply["samples"] = new

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import Browser, Page, expect, sync_playwright
+from playwright.sync_api import Browser, Page, WebSocketRoute, expect, sync_playwright
 
 from tests.live.mission import proven
 from tests.live.page_client import Shown, shown_mission
@@ -129,6 +129,30 @@ def test_a_log_is_moved_through_by_slider_and_events_and_says_why(tmp_path: Path
         expect(page.locator("#why")).to_be_hidden()
     expect(page.locator("#state")).to_have_text("connection lost")
     expect(page.locator("#banner")).to_contain_text("the page tries again")
+
+
+def test_a_page_that_has_lost_its_line_says_so_and_comes_back(tmp_path: Path, page: Page) -> None:
+    path = tmp_path / "mission.mcap"
+    write_log(path, scenario())
+    lines: list[WebSocketRoute] = []
+
+    def connect(line: WebSocketRoute) -> None:
+        lines.append(line)
+        line.connect_to_server()
+
+    page.route_web_socket("**/feed/*", connect)
+    with Shown("live", str(path)) as shown:
+        page.goto(shown.url)
+        expect(page.locator("#state")).to_have_text("arrived")
+        page.locator("#pause").click()
+        page.locator("#slider").fill("60")
+        expect(page.locator("#clock")).to_have_text("3.0 s")
+        lines[0].close()
+        expect(page.locator("#state")).to_have_text("connection lost")
+        expect(page.locator("#state")).to_have_text("arrived")
+        expect(page.locator("#clock")).to_have_text("3.0 s")
+        assert len(lines) == 2
+        expect(page.locator(".events li").first).to_contain_text("gather around robot 2")
 
 
 def test_a_torn_log_is_shown_as_far_as_it_is(tmp_path: Path, page: Page) -> None:

@@ -113,6 +113,7 @@ export class View {
     if (news.hand) this.hand = news.hand;
     if (news.difference !== undefined) this.difference = news.difference;
     if (news.again) this.again.show(news.again);
+    if (news.names) this.charts.rename(news.names);
     if (news.samples) this.charts.add(news.samples);
     if (news.events) {
       this.events.take(news.events);
