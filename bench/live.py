@@ -2,12 +2,14 @@
 
 Prints one JSON object. The viewer is a process that asks for frames as a page does, and draws nothing: a
 browser on the same cores takes what it takes. `server_cpu` is the share of a core that the launcher's
-process takes with the page, less what it takes without.
+process takes with the page, less what it takes without; `mission_cpu_ms` what all processes of the mission
+take for a tick, which other work on the machine moves less than the rate.
 """
 
 import argparse
 import json
 import multiprocessing
+import os
 import statistics
 import tempfile
 import time
@@ -30,9 +32,10 @@ WANT = json.dumps({"kind": "want", "tick": -1, "since": -1, "robot": 1})
 
 
 class Cost(NamedTuple):
-    """Of one mission. frames_per_s: that a viewer was sent."""
+    """Of one mission. mission_cpu_ms: of its processes a tick. frames_per_s: that a viewer was sent."""
 
     ticks_per_s: float
+    mission_cpu_ms: float
     cpu: float
     frames_per_s: float
 
@@ -60,7 +63,7 @@ def mission(robots: int, limit: float, viewers: int | None, folder: Path) -> Cos
     frames = context.Value("q", 0)
     with claimed(folder) as claim:
         plan = launcher.plan(bundle, arguments, folder, claim, True)
-        before = time.process_time()
+        before, spent = time.process_time(), _of_children_s()
         if viewers is None:
             summary = launcher.run(plan, lambda _: None)
         else:
@@ -73,15 +76,22 @@ def mission(robots: int, limit: float, viewers: int | None, folder: Path) -> Cos
                     one.start()
                 summary = launcher.run(plan, lambda _: None, attend=page.attend)
                 used = time.process_time() - before
+                spent_s = _of_children_s() - spent
             for one in looking:
                 one.join(10.0)
-            return _cost(summary, used, frames.value / max(1, viewers))
-        return _cost(summary, time.process_time() - before, 0)
+            return _cost(summary, spent_s, used, frames.value / max(1, viewers))
+        return _cost(summary, _of_children_s() - spent, time.process_time() - before, 0)
 
 
-def _cost(summary: dict[str, Any], used_s: float, frames: float) -> Cost:
-    wall_s = float(summary["wall_s"])
-    return Cost(float(summary["ticks_per_s"]), used_s / wall_s, frames / wall_s)
+def _of_children_s() -> float:
+    """CPU time of the children that have ended [s]: those of missions; viewers end after it is read."""
+    times = os.times()
+    return times.children_user + times.children_system
+
+
+def _cost(summary: dict[str, Any], spent_s: float, used_s: float, frames: float) -> Cost:
+    wall_s, ticks = float(summary["wall_s"]), int(summary["ticks"])
+    return Cost(float(summary["ticks_per_s"]), 1e3 * spent_s / ticks, used_s / wall_s, frames / wall_s)
 
 
 def main() -> None:
@@ -108,6 +118,10 @@ def main() -> None:
         "ratio_of_each_round": [
             round(a.ticks_per_s / b.ticks_per_s, 3) for a, b in zip(watched, without, strict=True)
         ],
+        "mission_cpu_ms": {
+            "without": round(statistics.median(one.mission_cpu_ms for one in without), 2),
+            "watched": round(statistics.median(one.mission_cpu_ms for one in watched), 2),
+        },
         "server_cpu": round(cpu, 3),
         "frames_per_s": round(statistics.median(one.frames_per_s for one in watched), 1),
     }
