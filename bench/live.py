@@ -2,8 +2,8 @@
 
 Prints one JSON object. The viewer is a process that asks for frames as a page does, and draws nothing: a
 browser on the same cores takes what it takes. `server_cpu` is the share of a core that the launcher's
-process takes with the page, less what it takes without; `mission_cpu_ms` what all processes of the mission
-take for a tick, which other work on the machine moves less than the rate.
+process takes with the page, less what it takes without; `mission_cpu_ms` what all processes of the
+mission take for a tick, which other work on the machine moves less than the rate.
 """
 
 import argparse

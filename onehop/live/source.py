@@ -113,7 +113,7 @@ class Source:
         log, story = self.log, self.story
         if log is None or story is None or not 0 <= tick <= story.last_tick:
             return None
-        moment = Moment(log, tick, since, robot if robot in log.robots else 0)
+        moment = Moment(log, story, tick, since, robot if robot in log.robots else 0)
         if moment.truth is None:
             return None
         shown = frame(moment, story)

@@ -5,6 +5,7 @@ little: notes, faults, departures and contacts as they come, numbers of each rob
 """
 
 import math
+from collections import deque
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -22,6 +23,22 @@ SAMPLE_S = 0.5
 
 CHARTS = 4
 """Numbers of each robot that are charted."""
+
+
+RECENT_TICKS = 100
+"""Ticks of which the lost messages are at hand: a page at the newest moment asks for no others."""
+
+Lost = list[tuple[int, int, str]]
+"""Messages that were lost in a tick: who held it last, who should have got it, why."""
+
+
+def lost_in(record: RadioRecord) -> Lost:
+    """The lost messages of a tick."""
+    return [
+        (one.path[-1] if one.path else one.source, one.receiver, one.status.value)
+        for one in record.verdicts
+        if one.status is not DeliveryStatus.DELIVERED
+    ]
 
 
 class Departure(NamedTuple):
@@ -61,6 +78,7 @@ class Story:
         self.begun: list[FaultSection] = []
         self.samples: list[list[Any]] = []
         self.names: list[str] = []
+        self._recent: deque[tuple[int, Lost]] = deque(maxlen=RECENT_TICKS)
         self._has_team = any(scenario.program_of(robot)[0] == BUILT_IN for robot in self.robots)
         self.routes: dict[int, list[Route]] = {robot: [] for robot in self.robots}
         self._period_s = scenario.clock.period_ns / 1e9
@@ -122,6 +140,7 @@ class Story:
                 self.departures.append(Departure(truth.tick, one.robot, pose.x, pose.y, one.why))
 
     def _take_radio(self, record: RadioRecord) -> None:
+        self._recent.append((record.tick, lost_in(record)))
         for verdict in record.verdicts:
             if verdict.status is not DeliveryStatus.DELIVERED:
                 continue
@@ -167,6 +186,13 @@ class Story:
         if state != self._told:
             self._told, self._events = state, narrative(self)
         return self._events
+
+    def recently_lost(self, first: int, last: int) -> Lost | None:
+        """What was lost in the ticks first..last; None if that is not at hand any more."""
+        recent = list(self._recent)
+        if not recent or recent[0][0] > first or recent[-1][0] < last:
+            return None
+        return [lost for tick, in_tick in recent if first <= tick <= last for lost in in_tick]
 
     def gone_at(self, tick: int, present: set[int]) -> list[Departure]:
         """Who has left by a tick and is not there in it: the last departure of each."""
