@@ -109,12 +109,12 @@ def test_a_log_is_moved_through_by_slider_and_events_and_says_why(tmp_path: Path
     team = ("team.next_period=0.5", "team.leader_timeout=1.2", "clock.limit_s=10", kill)
     log_of(field(tmp_path, *team, f'name="{HOSTILE}"'), tmp_path / "mission.mcap")
     with Shown("live", str(tmp_path / "mission.mcap")) as shown:
-        page.goto(shown.url)
+        page.goto(f"{shown.url}&at=1")
         expect(page.locator("#state")).to_have_text("failed")
         expect(page.locator("#title")).to_have_text(f"{HOSTILE} · seed 3")
         assert page.evaluate("document.querySelectorAll('img').length") == 0
         assert page.evaluate("window.hacked") is None
-        page.locator("#pause").click()
+        expect(page.locator("#clock")).to_have_text("1.0 s")
         page.locator("#slider").fill("114")
         expect(page.locator("#clock")).to_have_text("5.7 s")
         expect(page.locator(".card").nth(1)).to_contain_text("leader")
@@ -142,9 +142,8 @@ def test_a_page_that_has_lost_its_line_says_so_and_comes_back(tmp_path: Path, pa
 
     page.route_web_socket("**/feed/*", connect)
     with Shown("live", str(path)) as shown:
-        page.goto(shown.url)
+        page.goto(f"{shown.url}&at=1")
         expect(page.locator("#state")).to_have_text("arrived")
-        page.locator("#pause").click()
         page.locator("#slider").fill("60")
         expect(page.locator("#clock")).to_have_text("3.0 s")
         lines[0].close()
@@ -184,7 +183,6 @@ def test_fifty_robots_cost_the_page_less_than_a_thirtieth_of_a_second(
         page.goto(shown.url)
         expect(page.locator(".card")).to_have_count(50)
         page.locator("#slider").fill("20")
-        page.locator("#pause").click()
         until(page, lambda: draw_ms(page) > 0)
         until(page, lambda: clock_s(page) > 3.0)
         assert draw_ms(page) < 1000 / 30

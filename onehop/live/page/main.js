@@ -58,7 +58,9 @@ function changed(view) {
   }
   if (view.isFresh && state.told) {
     view.isFresh = false;
-    playback.isNow = Boolean(hand) || state.state === "running" || state.state === "starting";
+    const at = Number.parseFloat(new URLSearchParams(location.search).get("at") ?? "");
+    if (at >= 0) playback.open(at);
+    else playback.isNow = Boolean(hand) || state.state === "running" || state.state === "starting";
   }
   if (view.difference !== undefined && view.difference !== difference) {
     difference = view.difference;
@@ -116,11 +118,13 @@ function pause() {
   else if (playback.isNow) {
     playback.isPlaying = true;
     seek(0);
-  } else {
-    if (!playback.isPlaying && playback.time >= end() - period()) playback.time = 0;
-    playback.isPlaying = !playback.isPlaying;
-  }
+  } else if (isAtEnd()) {
+    playback.isPlaying = true;
+    seek(0);
+  } else playback.isPlaying = !playback.isPlaying;
 }
+
+const isAtEnd = () => !playback.isNow && playback.time >= end() - period() / 2;
 
 function step() {
   if (holdsMission()) setPace(true, views[0].hand.paused ? 1 : 0);
@@ -212,7 +216,7 @@ function showTime() {
   showState(view);
   const mission = holdsMission();
   const paused = mission ? view.hand.paused : !playback.isPlaying;
-  put(byId("pause"), playback.isNow && !mission ? "Play it again" : paused ? "Go on" : "Pause");
+  put(byId("pause"), (playback.isNow && !mission) || isAtEnd() ? "Play it again" : paused ? "Go on" : "Pause");
   byId("step").disabled = byId("slower").disabled = byId("faster").disabled = playback.isNow && !mission;
   const atPace = mission && view.hand.ticks_per_s > 0 ? view.hand.ticks_per_s * period() : 0;
   put(byId("speed"), mission ? (atPace ? `${+atPace.toFixed(2)}\u00d7` : "full speed") : `${playback.factor}\u00d7`);
