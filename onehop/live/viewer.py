@@ -190,6 +190,7 @@ class Viewer:
             "yours": self._watchers.holder is self,
             "viewers": len(self._watchers),
             "holds": hand.holds,
+            "is_paced": hand.is_paced,
             "ticks_per_s": hand.pace.ticks_per_s,
             "paused": hand.pace.paused,
         }

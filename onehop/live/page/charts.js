@@ -1,6 +1,6 @@
 // Four strips of numbers over time, one line a robot. Drawn anew only when there is something new.
 
-import { colours, el, fit, put, seconds } from "./dom.js";
+import { colours, el, fit, put, seconds, sizeOf } from "./dom.js";
 
 const KINDS = [
   { name: "throughput", unit: "kbit/s", place: 2, hint: "measured on each command; dashed: threshold" },
@@ -67,15 +67,16 @@ export class Charts {
       this.isDirty = false;
     }
     for (const { canvas, cursor } of this.panels) {
-      cursor.style.left = `${LEFT + (Math.min(now, this.end) / this.end) * (canvas.clientWidth - LEFT - 4)}px`;
+      const at = LEFT + (Math.min(now, this.end) / this.end) * (sizeOf(canvas).width - LEFT - 4);
+      cursor.style.transform = `translateX(${at.toFixed(1)}px)`;
     }
   }
 
   drawOne({ kind, canvas }, palette) {
     const pen = canvas.getContext("2d");
-    const scale = canvas.width / Math.max(1, canvas.clientWidth);
+    const { width, height } = sizeOf(canvas);
+    const scale = canvas.width / Math.max(1, width);
     pen.setTransform(scale, 0, 0, scale, 0, 0);
-    const width = canvas.clientWidth, height = canvas.clientHeight;
     pen.clearRect(0, 0, width, height);
     const step = Math.max(1, Math.floor(this.samples.length / Math.max(60, width)));
     let low = Infinity, high = -Infinity;

@@ -1,6 +1,6 @@
 // The page: one view a log, one time for all of them, and the buttons.
 
-import { byId, colours, el, fit, put, seconds } from "./dom.js";
+import { byId, el, fit, put, seconds } from "./dom.js";
 import { Playback, SPEEDS } from "./playback.js";
 import { View } from "./view.js";
 
@@ -79,7 +79,7 @@ const period = () => views[0].period || 0.05;
 const end = () => Math.max(...views.map((view) => view.end));
 const isMission = () => Boolean(views[0].hand);
 /** Whether the buttons of time are those of the mission, or of what is shown of it. */
-const holdsMission = () => playback.isNow && isMission() && views[0].hand.holds;
+const holdsMission = () => playback.isNow && isMission() && views[0].hand.holds && views[0].hand.is_paced;
 
 function seek(time) {
   playback.seek(time, end());
@@ -253,11 +253,11 @@ const differs = () => (difference ? difference.words : "");
 /** Events on the slider, and where two logs begin to differ. */
 function drawMarks(last) {
   const canvas = byId("marks");
-  const state = `${last} ${views.map((view) => `${view.events.rows.length}`)} ${difference?.at} ${colours().bad}`;
+  const { palette } = views[0];
+  const state = `${last} ${views.map((view) => `${view.events.rows.length}`)} ${difference?.at} ${palette.bad}`;
   if (!fit(canvas) && state === marksOf) return;
   marksOf = state;
   const pen = canvas.getContext("2d");
-  const palette = colours();
   pen.clearRect(0, 0, canvas.width, canvas.height);
   const whole = Math.max(1, last) * period();
   for (const view of views) {
