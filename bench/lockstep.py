@@ -16,7 +16,8 @@ from pathlib import Path
 from onehop.contracts import topics
 from onehop.mission import launcher
 from onehop.mission.processes import free_endpoint
-from onehop.node.bus import Bus, make_credentials, open_client, open_router
+from onehop.node.bus import Bus, open_client, open_router
+from onehop.node.identity import make_credentials
 from onehop.scenario import scenario_file
 from onehop.wire.output_folder import claimed
 

@@ -10,7 +10,7 @@ from typing import NoReturn
 
 import typer
 
-from onehop.commands import log_app, many_app, programs_app, study_app  # noqa: F401 - they add theirs
+from onehop.commands import hosts_app, log_app, many_app, programs_app, study_app  # noqa: F401 - they add theirs
 from onehop.commands.app import app
 from onehop.contracts.errors import OnehopError
 from onehop.contracts.printable import printable

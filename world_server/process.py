@@ -11,25 +11,18 @@ from onehop.contracts.arrays import FloatArray
 from onehop.contracts.operation import End
 from onehop.maps.map_file import load_map
 from onehop.node import startup
-from onehop.node.bus import Bus, open_router
+from onehop.node.bus import Bus
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
 from world_server.briefings import Briefings
+from world_server.clocks import Parts, lock_step, real_time
 from world_server.core.world import World
-from world_server.fault_orders import FaultOrders
-from world_server.lockstep import LockStep
 from world_server.mailbox import Mailbox, MissionBrokenError
-from world_server.pace import PaceKeeper
-from world_server.process_faults import ProcessFaults
-from world_server.progress import ProgressReports
-from world_server.recording import Recording
-from world_server.remote_radio import RemoteRadio
-from world_server.remote_robots import RemoteRobots
 from world_server.roll_call import RollCall
 
 START_S = 30.0
-"""How long the start of all processes may take [s]."""
+"""How long the start of all processes may take [s], if nothing else is said."""
 
 FAREWELL_S = 30.0
 """How long the world stays, as the router of the bus, for those who have yet to finish [s]."""
@@ -50,8 +43,8 @@ def main() -> int:
     with scenario_file.in_file(options.scenario):
         world = World(bundle.scenario, walls)
     world.observe()  # compiles or loads the laser kernel before anyone waits for it
-    with open_router(options.mission, options.listen, startup.credentials()) as bus:
-        _host(bus, bundle, world, walls.segments, options.driver)
+    with startup.listen(options, topics.clients(bundle.scenario.team.robots)) as bus:
+        _host(bus, bundle, world, walls.segments, options.driver, options.start_s)
     return 0
 
 
@@ -64,29 +57,26 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--start", metavar="X,Y")
     parser.add_argument("--goal", metavar="X,Y")
     parser.add_argument("--listen", required=True, metavar="ENDPOINT", help="e.g. tcp/127.0.0.1:7447")
+    startup.add_keys(parser)
+    parser.add_argument(
+        "--start-s", type=float, default=START_S, metavar="S", help="how long to wait for the others [s]"
+    )
     parser.add_argument("--driver", default="processes", help="what the log calls this way of running")
     return parser.parse_args()
 
 
-def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str) -> None:
+def _host(
+    bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str, start_s: float
+) -> None:
     """Run the mission from the first process's arrival to the last one's farewell."""
-    robots, silence_s = bundle.scenario.team.robots, bundle.scenario.clock.silence_s
+    robots = bundle.scenario.team.robots
     mail = Mailbox(bus)
     roll = RollCall(mail, robots)
     briefings = Briefings(bundle, walls, driver, roll.incarnation)
     open_briefings = partial(bus.answering, topics.config("*"), briefings.answer)
-    recording = Recording(bus, mail, silence_s)
-    orders = FaultOrders(bus, mail, robots)
-    mission = LockStep(
-        world,
-        RemoteRadio(bus, mail, silence_s),
-        RemoteRobots(bus, mail, roll, robots, silence_s),
-        ProcessFaults(bus, mail, roll, robots, open_briefings, silence_s),
-        orders,
-        recording,
-        ProgressReports(bus),
-        PaceKeeper(mail, recording, orders),
-    )
+    make = real_time if bundle.scenario.clock.is_realtime else lock_step
+    mission = make(Parts(bus, mail, roll, world, bundle.scenario, open_briefings))
+    recording = mission.recording
     _heed_stops(bus, mail)
     mail.read(topics.RECORDER, topics.FAILED, lambda why: mail.break_off(why.decode(errors="replace")))
     bus.watch("*")
@@ -94,16 +84,16 @@ def _host(bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str
     started = time.monotonic()
     try:
         with open_briefings():
-            roll.gather(roll.everyone, START_S)
+            roll.gather(roll.everyone, start_s)
         startup.calm_garbage_collector()
         started = time.monotonic()
         outcome = mission.run()
     except MissionBrokenError as broken:
-        outcome = world.aborted(broken.reason)
+        outcome = mission.broken_off(broken.reason)
     wall_s = time.monotonic() - started
     recording.hand_over()
     mail.close_mission()
-    _tell_the_end(bus, roll, End(outcome, recording.last_tick, wall_s))
+    _tell_the_end(bus, roll, End(outcome, recording.last_tick, wall_s, mission.punctuality))
     mail.wait(lambda: roll.present.isdisjoint(roll.everyone), FAREWELL_S)
 
 

@@ -29,6 +29,11 @@ class Driver(StrEnum):
     INLINE = "inline"
 
 
+class Clock(StrEnum):
+    LOCKSTEP = "lockstep"
+    REALTIME = "realtime"
+
+
 class Preset(StrEnum):
     THESIS = "thesis"
     PHYSICAL = "physical"
@@ -69,6 +74,13 @@ def _help(context: typer.Context) -> None:
 def run(
     scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
     driver: Annotated[Driver, Option(help="One process each, or all in one.")] = Driver.PROCESSES,
+    clock: Annotated[
+        Clock | None, Option(help="Everyone waits for everyone in a tick, or nobody for anybody.")
+    ] = None,
+    speed: Annotated[
+        float | None,
+        Option(help="In real time: simulated seconds in one second.", callback=within(numbers.SPEED)),
+    ] = None,
     seed: Annotated[
         int | None, Option(help="Seed of everything random.", callback=within(numbers.SEED))
     ] = None,
@@ -83,6 +95,17 @@ def run(
         Option(metavar="MODULE:CLASS", help="Program of all robots without one of their own."),
     ] = None,
     out: Annotated[Path | None, Option(help="Folder for log, summary and figure.")] = None,
+    bus: Annotated[
+        str | None, Option(metavar="tls/HOST:PORT", help="Where the world listens for other hosts.")
+    ] = None,
+    keys: Annotated[Path | None, Option(metavar="DIR", help="Certificates, of onehop keys.")] = None,
+    remote: Annotated[
+        str, Option(metavar="3,4[,radio]", help="Who is started on other hosts, and waited for.")
+    ] = "",
+    mission: Annotated[str, Option(help="Prefix of its keys on a bus that others reach.")] = "onehop",
+    wait_s: Annotated[
+        float, Option("--wait", help="How long for other hosts [s].", callback=within(numbers.WAIT))
+    ] = 300.0,
     record: Annotated[bool, Option("--record/--no-record", help="Write the log.")] = True,
     with_view: Annotated[
         bool, Option("--view/--no-view", help="Add to the log what Foxglove and Rerun show.")
@@ -106,9 +129,15 @@ def run(
     """
     from onehop.commands import run as command
 
+    settings = [*settings, *command.clock_settings(None if clock is None else clock.value, speed)]
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
-    leave(command.run(scenario, driver.value, settings, seed, *places, *wanted, program, live, browser))
+    hosts = command.Hosts(bus, keys, remote, mission, wait_s)
+    given = command.run(
+        scenario, driver.value, settings, seed, *places, *wanted, program, hosts,
+        live=live, browser=browser,
+    )  # fmt: skip
+    leave(given)
 
 
 @app.command()

@@ -103,7 +103,8 @@ def _tried(name: str, attempt: Callable[[], str], remedy: str) -> Check:
 def _bus() -> str:
     """Open a router on loopback and reach it, as a mission does."""
     from onehop.mission.processes import free_endpoint
-    from onehop.node.bus import make_credentials, open_client, open_router
+    from onehop.node.bus import open_client, open_router
+    from onehop.node.identity import make_credentials
 
     endpoint, words = free_endpoint(), make_credentials(["doctor"])
     with (

@@ -12,6 +12,9 @@ ROBOT = Range(1, 2**31 - 1)
 MISSION_TIME = Range(0.0, 1e6)
 """Simulated time [s], as in a scenario."""
 
+SPEED = Range(0.01, 100.0)
+"""Simulated seconds in one of the wall clock."""
+
 CELL = Range(1e-3, 1e3)
 """Metres a cell of a MovingAI grid, as in a scenario."""
 
@@ -39,6 +42,15 @@ JOBS = Range(1, 1000)
 """Worker processes."""
 
 SHARE = Range(0.0, 1.0)
+
+ROBOTS = Range(1, 300)
+"""Robots of a team, as in a scenario."""
+
+DAYS = Range(1, 3650)
+"""How long a certificate is good [days]."""
+
+WAIT = Range(1.0, 86_400.0)
+"""How long a mission waits for processes on other hosts [s]."""
 
 
 def within(limits: Range) -> Callable[[CallbackParam, float | None], float | None]:

@@ -2,17 +2,31 @@
 
 import contextlib
 import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from onehop.commands.output import emit_json, say, stdout, table
 from onehop.contracts.errors import InputError
+from onehop.mission.placement import WAIT_S, Placement, on_hosts
 from onehop.mission.progress import Display
+from onehop.node.startup import DEFAULT_MISSION
 from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import FIGURE, REMEDY, claimed, explained
-from onehop.wire.summary import summary_file
+from onehop.wire.summary import punctuality_of, summary_file, write_summary
+
+
+@dataclass(frozen=True, slots=True)
+class Hosts:
+    """Options of a mission on several hosts, as they are typed; see placement.on_hosts."""
+
+    bus: str | None = None
+    keys: Path | None = None
+    remote: str = ""
+    mission: str = DEFAULT_MISSION
+    wait_s: float = WAIT_S
 
 
 def run(
@@ -28,11 +42,13 @@ def run(
     with_view: bool,
     as_json: bool,
     program: str | None = None,
+    hosts: Hosts | None = None,
     live: str | None = None,
     browser: bool = True,
 ) -> int:
-    """Run one mission; returns the exit status. program: of the team, in place of the scenario's.
+    """Run one mission; returns the exit status.
 
+    program: of the team, in place of the scenario's. hosts: the bus of a mission on several hosts.
     live: where the live page is served (guard.parse_address). browser: open it, if there is a screen.
     """
     if live is not None:
@@ -49,6 +65,7 @@ def run(
     )
     search_in(bundle.folder)
     check(bundle.scenario, str(scenario))
+    placement = None if hosts is None else _placed(hosts, driver, bundle)
     if driver == "inline":
         require_programs(bundle.scenario, str(scenario))
     folder = out or _fresh_folder(bundle)
@@ -59,7 +76,8 @@ def run(
 
             places = (("--map", map_file), ("--start", start), ("--goal", goal))
             words = words_of(scenario, settings, bundle.scenario.seed, places)
-            shown = page.enter_context(live_page(live, browser, folder, words))
+            is_paced = not bundle.scenario.clock.is_realtime
+            shown = page.enter_context(live_page(live, browser, folder, words, is_paced))
         with Display(bundle.scenario) as display:
             if driver == "inline":
                 from onehop.commands.inline_run import run_inline
@@ -70,9 +88,12 @@ def run(
                 from onehop.mission import launcher
 
                 arguments = launcher.world_arguments(scenario, settings, seed, map_file, start, goal)
-                plan = launcher.plan(bundle, arguments, folder, claim, record)
+                plan = launcher.plan(bundle, arguments, folder, claim, record, placement)
                 attend = launcher.nobody if shown is None else shown.attend
                 summary = launcher.run(plan, display.show, display.tell, attend)
+        if summary["log"] is not None:
+            summary["energy"] = _energy(Path(summary["log"]))
+            write_summary(folder, summary)
         if as_json:
             emit_json(summary)
         else:
@@ -86,12 +107,32 @@ def run(
     return 0 if summary["outcome"] == "arrived" else 1
 
 
+def _placed(hosts: Hosts, driver: str, bundle: Bundle) -> Placement | None:
+    """Where the mission's processes are to run. Raises InputError."""
+    if hosts == Hosts():
+        return None
+    if driver == "inline":
+        raise InputError("--driver inline", "has no bus", "leave --bus, --keys and --remote out")
+    if hosts.bus is None:
+        raise InputError("--bus", "missing", "where the world is to listen, e.g. tls/10.0.0.1:7447")
+    robots = bundle.scenario.team.robots
+    return on_hosts(hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s, robots)
+
+
 def _require_what_is_shown(driver: str, record: bool) -> None:
     """Raises InputError."""
     if driver == "inline":
         raise InputError("--live", "a mission in one process has no page", "--driver processes")
     if not record:
         raise InputError("--live", "it shows the log as it is written", "leave out --no-record")
+
+
+def clock_settings(clock: str | None, speed: float | None) -> list[str]:
+    """--clock and --speed as settings of the scenario. Raises InputError."""
+    if speed is not None and clock == "lockstep":
+        raise InputError("--speed", "lock-step is as fast as it can be", "--clock realtime with it")
+    settings = [] if clock is None else [f'clock.mode="{clock}"']
+    return settings if speed is None else [*settings, f"clock.speed={speed!r}"]
 
 
 def _fresh_folder(bundle: Bundle) -> Path:
@@ -107,6 +148,20 @@ def _fresh_folder(bundle: Bundle) -> Path:
             except FileExistsError:
                 number += 1
                 folder = Path("runs") / f"{stem}-{number}"
+
+
+def _energy(log: Path) -> list[dict[str, Any]]:
+    """What each robot has spent, driving and in its card [J], from the first tick to the last."""
+    from onehop.analysis.log import open_log
+
+    spent = open_log(log).table("energy")
+    robots = sorted(set(spent["robot"].tolist()))
+    kinds = ("drive_j", "radio_j")
+    of = {robot: spent.of(robot) for robot in robots}
+    return [
+        {"robot": robot, **{kind: round(float(of[robot][kind].sum()), 1) for kind in kinds}}
+        for robot in robots
+    ]
 
 
 def _add_pictures(log: Path, with_view: bool) -> Path:
@@ -149,7 +204,15 @@ def _print(summary: dict[str, Any], folder: Path) -> None:
         f"simulated   {summary['sim_s']:.1f} s in {summary['wall_s']:.1f} s: {summary['ticks']} ticks, "
         f"{summary['ticks_per_s']:.0f} a second, {summary['real_time_factor']:.1f}x real time"
     )
+    punctuality = punctuality_of(summary)
+    if punctuality is not None:
+        console.print(f"real time   {punctuality.in_words()}")
     console.print(f"collisions  {summary['collisions']}")
+    if "energy" in summary:
+        driving, cards = (
+            sum(entry[kind] for entry in summary["energy"]) / 1000.0 for kind in ("drive_j", "radio_j")
+        )
+        console.print(f"energy      {driving:.1f} kJ for driving, {cards:.1f} kJ for the radio cards")
     console.print(f"digest      {summary['digest'] or 'none: the recorder did not finish'}")
     console.print(f"log         {summary['log'] or 'none'}")
     console.print(f"summary     {summary_file(folder)}")

@@ -5,6 +5,7 @@ speaks under `from/<name>`; the world hears all that is said there. Bus keys lie
 prefix, so that missions on one machine never hear each other.
 """
 
+from collections.abc import Iterable
 from functools import lru_cache
 
 WORLD, RADIO, RECORDER, OPERATOR = "world", "radio", "recorder", "operator"
@@ -20,6 +21,11 @@ _remembered = lru_cache(maxsize=4096)
 def robot_name(robot: int | str) -> str:
     """Name of a robot's process, liveliness token and identity: robot-3."""
     return f"robot-{robot}"
+
+
+def clients(robots: Iterable[int]) -> tuple[str, ...]:
+    """Everyone on the bus of a mission but the world."""
+    return (RADIO, RECORDER, OPERATOR, INJECTOR, *map(robot_name, robots))
 
 
 def to(name: str, what: str) -> str:
@@ -48,6 +54,21 @@ OUT = "out"
 
 PART = "part"
 """To or from a robot: the beginning of a message that is longer than its link carries."""
+
+OBSERVATION = "observation"
+"""World to robot, in real time: its observation of a tick."""
+
+HEARD = "heard"
+"""Radio to robot, in real time: a reception, when it is due."""
+
+ACTED = "acted"
+"""Robot to world, in real time: its action, and what it has heard for it."""
+
+PLACED = "placed"
+"""World to radio, in real time: ground truth of a tick."""
+
+HANDED = "handed"
+"""World to radio, in real time: what a robot hands to its NIC."""
 
 KILL = "kill"
 """World to robot: a kill by a fault, which the robot's process carries out on itself; world to operator:
@@ -126,6 +147,10 @@ TRUTH = "truth"
 
 RADIO_RECORD = "radio"
 """Log channel of the radio's verdicts; on the bus they travel in `carried`."""
+
+
+LATE = "late"
+"""Log channel of ticks of real time that began late."""
 
 
 @_remembered

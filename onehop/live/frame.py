@@ -14,7 +14,6 @@ from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import to_map
 from onehop.contracts.messages import (
     Action,
-    Inbox,
     Observation,
     Presence,
     RadioRecord,
@@ -26,7 +25,7 @@ from onehop.contracts.team import Status
 from onehop.live.now import now_in_words
 from onehop.live.story import Lost, Story, lost_in
 from onehop.wire.log_reader import forged
-from onehop.wire.logged import decoded
+from onehop.wire.logged import TickMessage, decoded
 from onehop.wire.selection import one_of
 from robot_agent.core.team.formation import formation, shape_of
 
@@ -67,7 +66,7 @@ class Moment:
         if isinstance(record, RadioRecord):
             self.lost += lost_in(record)
 
-    def _take(self, key: str, value: Truth | RadioRecord | Inbox | Observation | Action) -> None:
+    def _take(self, key: str, value: TickMessage) -> None:
         if isinstance(value, Truth):
             self.truth = value
         elif isinstance(value, Action):

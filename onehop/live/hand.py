@@ -14,8 +14,8 @@ from onehop.mission.launcher import Running
 class Hand:
     """words: the command that has started the mission, by which it is started again.
 
-    pace: the one in force; a mission goes as fast as it can until it is told otherwise. is_paced: whether
-    it heeds a pace, as one in lock-step does.
+    pace: the one in force; a mission goes as fast as it can until it is told otherwise.
+    is_paced: whether it heeds a pace, as one in lock-step does.
     """
 
     def __init__(self, words: Sequence[str], is_paced: bool = True) -> None:
@@ -55,6 +55,6 @@ class Hand:
 
     def set_pace(self, pace: Pace) -> None:
         running = self._running
-        if running is not None:
+        if running is not None and self.is_paced:
             self.pace = pace
             running.set_pace(pace)

@@ -22,9 +22,10 @@ REPEAT_S = 0.5
 
 
 def inject(way_in: Rendezvous, fault: FaultSection) -> FaultAnswer:
-    """The world's answer. Raises MissionError when there is none."""
+    """The world's answer. Raises MissionError when there is none, InputError for a bad certificate."""
+    identity = way_in.identity()
     try:
-        bus = open_client(way_in.mission, way_in.endpoint, topics.INJECTOR, way_in.password, CONNECT_MS)
+        bus = open_client(way_in.mission, way_in.endpoint, topics.INJECTOR, identity, CONNECT_MS)
     except MissionError as error:
         raise MissionError(f"the mission does not answer: {error}") from None
     with bus:

@@ -4,7 +4,6 @@ import contextlib
 import math
 import os
 import time
-import uuid
 from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -15,8 +14,9 @@ from onehop.contracts import topics
 from onehop.contracts.errors import InputError, MissionError
 from onehop.contracts.operation import Pace, Progress
 from onehop.mission.operator import LOST_WORD, STOPPED, Ending, OperatorSession, aborted, ending_by_death
-from onehop.mission.processes import ProcessGroup, free_endpoint
-from onehop.mission.rendezvous import Rendezvous, published
+from onehop.mission.placement import Placement
+from onehop.mission.processes import ProcessGroup, on_loopback
+from onehop.mission.rendezvous import Rendezvous, entrance, published
 from onehop.mission.stops import StopRequest
 from onehop.node.bus import CONNECT_TIMEOUT_MS, LEASE_MS, Bus, open_client
 from onehop.scenario.bundle import Bundle
@@ -46,7 +46,8 @@ class LaunchPlan:
 
     out: the folder of its output, held by the descriptor `claim` (output_folder.claimed).
     programs: where robots look for programs that are not installed, and where commands are started.
-    commands: of robots that are processes of somebody else's making.
+    commands: of robots that are processes of somebody else's making. placement: where its processes run;
+    None: all here, on a bus of its own on loopback.
     """
 
     world_arguments: tuple[str, ...]
@@ -56,6 +57,7 @@ class LaunchPlan:
     record: bool
     programs: str
     commands: dict[int, tuple[str, ...]]
+    placement: Placement | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,12 +81,17 @@ def nobody(_: Running) -> AbstractContextManager[None]:
 
 
 def plan(
-    bundle: Bundle, world_arguments: tuple[str, ...], out: Path, claim: int, record: bool
+    bundle: Bundle,
+    world_arguments: tuple[str, ...],
+    out: Path,
+    claim: int,
+    record: bool,
+    placement: Placement | None = None,
 ) -> LaunchPlan:
     """How to run a mission; see LaunchPlan."""
     scenario = bundle.scenario
     robots, commands = scenario.team.robots, scenario.commands
-    return LaunchPlan(world_arguments, robots, out, claim, record, bundle.folder, commands)
+    return LaunchPlan(world_arguments, robots, out, claim, record, bundle.folder, commands, placement)
 
 
 def run(
@@ -132,16 +139,16 @@ class _Launch:
 
     def summary(self) -> dict[str, Any]:
         """Run it; its summary, complete."""
+        plan = self._plan
         for _ in range(START_ATTEMPTS):
-            mission = f"onehop-{uuid.uuid4().hex[:8]}"
-            endpoint = free_endpoint()
-            words = self._plan.out / "stderr"
-            plan = self._plan
-            programs = plan.programs, plan.commands
-            with ProcessGroup(endpoint, mission, plan.robots, words, *programs) as group:
-                ending = self._run_once(group, mission, endpoint)
+            placement = plan.placement or on_loopback()
+            words = plan.out / "stderr"
+            with ProcessGroup(placement, plan.robots, words, plan.programs, plan.commands) as group:
+                ending = self._run_once(group, placement)
             if ending is not None:
                 return self._summary_of(ending, group)
+            if plan.placement is not None:
+                raise InputError(f"--bus {placement.listen}", "somebody listens there", "another port")
         raise MissionError(f"no free port on loopback found in {START_ATTEMPTS} attempts")
 
     def _summary_of(self, ending: Ending, group: ProcessGroup) -> dict[str, Any]:
@@ -150,34 +157,43 @@ class _Launch:
         if left is not None:
             return {**left, "processes": [process._asdict() for process in group.processes]}
         log = str(self._log) if _written_ns(self._log) != self._log_before else None
-        return summarize(ending.outcome, ending.wall_s, ending.digest, log, group.processes)
+        return summarize(
+            ending.outcome, ending.wall_s, ending.digest, log, group.processes, ending.punctuality
+        )
 
-    def _run_once(self, group: ProcessGroup, mission: str, endpoint: str) -> Ending | None:
+    def _run_once(self, group: ProcessGroup, placement: Placement) -> Ending | None:
         """One attempt; None when the port was taken in between."""
         group.start_world(self._plan.world_arguments)
-        group.start_radio()
+        if group.is_here(topics.RADIO):
+            group.start_radio()
         group.start_recorder(self._plan.out, self._plan.record, self._plan.claim)
         for i in self._plan.robots:
-            group.start_robot(i)
-        bus = self._connect(group, mission, endpoint)
+            if group.is_here(topics.robot_name(i)):
+                group.start_robot(i)
+        bus = self._connect(group, placement)
         if not isinstance(bus, Bus):
             return bus
-        password = group.password(topics.INJECTOR)
-        way_in = Rendezvous(mission, endpoint, password, os.getpid())
+        if placement.remote:
+            self._tell(placement.invitation())
+        way_in = entrance(placement, group.identity(topics.INJECTOR), os.getpid())
         running = Running(way_in, lambda pace: bus.tell_self(topics.PACE, encode(pace)))
         with bus, published(self._plan.out, way_in), self._attend(running):
-            ending = OperatorSession(group, bus, self._stop, self._show, self._tell).until_end()
+            remote = placement.remote
+            session = OperatorSession(group, bus, self._stop, self._show, self._tell, remote)
+            ending = session.until_end()
             leave_s = 0.0 if ending.outcome.outcome == "aborted" else LEAVE_S
             group.end(leave_s)  # while the router can answer
         if group.said_something:
             self._tell(f"what the processes said on stderr is in {self._plan.out / 'stderr'}")
         return ending
 
-    def _connect(self, group: ProcessGroup, mission: str, endpoint: str) -> Bus | Ending | None:
+    def _connect(self, group: ProcessGroup, placement: Placement) -> Bus | Ending | None:
         """The operator's session as soon as the world listens, or the end of the mission before that.
 
         None when somebody else listens there.
         """
+        identity = group.identity(topics.OPERATOR)
+        mission, endpoint = placement.mission, placement.connect
         deadline = time.monotonic() + CONNECT_S
         stopped_from = math.inf
         while True:
@@ -194,9 +210,7 @@ class _Launch:
             if group.exit_status(topics.WORLD) is not None:
                 return aborted(LOST_WORD, 0)
             with contextlib.suppress(MissionError):
-                return open_client(
-                    mission, endpoint, topics.OPERATOR, group.password(topics.OPERATOR), CONNECT_TRY_MS
-                )
+                return open_client(mission, endpoint, topics.OPERATOR, identity, CONNECT_TRY_MS)
             if now > deadline:
                 raise MissionError(f"the world process has not opened the bus within {CONNECT_S:g} s")
 

@@ -3,13 +3,13 @@
 import math
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.contracts.messages import Outcome
-from onehop.contracts.operation import Death, End, Progress
+from onehop.contracts.operation import Death, End, Progress, Punctuality
 from onehop.mission.processes import ProcessGroup
 from onehop.mission.stops import StopRequest
 from onehop.node.bus import ALIVE, Bus
@@ -45,11 +45,15 @@ CANNOT_RUN = 2
 
 
 class Ending(NamedTuple):
-    """How a mission ended. wall_s: time of its ticks. digest: None if the recorder did not finish."""
+    """How a mission ended. wall_s: time of its ticks. digest: None if the recorder did not finish.
+
+    punctuality: in real time.
+    """
 
     outcome: Outcome
     wall_s: float
     digest: str | None
+    punctuality: Punctuality | None = None
 
 
 def aborted(reason: str, ticks: int) -> Ending:
@@ -71,7 +75,7 @@ class OperatorSession:
     """One mission from the moment at which its bus is there.
 
     stop: whether people want it to end. show: takes progress, some times a second. tell: takes lines for
-    people.
+    people. remote: names of processes on other hosts, of which people are told.
     """
 
     def __init__(
@@ -81,6 +85,7 @@ class OperatorSession:
         stop: StopRequest,
         show: Callable[[Progress], None],
         tell: Callable[[str], None],
+        remote: Sequence[str] = (),
     ) -> None:
         self._group = group
         self._bus = bus
@@ -98,7 +103,9 @@ class OperatorSession:
         self._control = bus.publisher(topics.by(topics.OPERATOR, topics.CONTROL))
         self._pace = bus.publisher(topics.by(topics.OPERATOR, topics.PACE))
         self._report = bus.publisher(topics.by(topics.OPERATOR, topics.DIED))
-        bus.watch(topics.WORLD)
+        self._remote = {topics.alive(name): name for name in remote}
+        self._missing = list(remote)
+        bus.watch("*" if remote else topics.WORLD)
 
     def until_end(self) -> Ending:
         """Watch over the mission to its end. Raises MissionError when it could not be run."""
@@ -142,7 +149,7 @@ class OperatorSession:
         elif what == topics.PACE:
             self._pace(data)
         elif what == topics.RESTART:
-            self._group.start_robot(int(data))
+            self._restart(int(data))
         elif what in SIGNALS:
             self._group.send(topics.robot_name(int(data)), SIGNALS[what])
         elif what == topics.END and data:
@@ -152,6 +159,25 @@ class OperatorSession:
         elif what == topics.alive(topics.WORLD):
             self._world_listens = data == ALIVE
             self._gone_s = math.inf if self._world_listens else time.monotonic()
+        elif what in self._remote:
+            self._tell_of_remote(self._remote[what], data == ALIVE)
+
+    def _restart(self, robot: int) -> None:
+        name = topics.robot_name(robot)
+        if self._group.is_here(name):
+            self._group.start_robot(robot)
+        else:
+            self._tell(f"{name} is to be started again, on its host")
+
+    def _tell_of_remote(self, name: str, is_there: bool) -> None:
+        """Say that a process on another host has come or gone, and who is still missing."""
+        if is_there and name in self._missing:
+            self._missing.remove(name)
+            rest = f"; waiting for {', '.join(self._missing)}" if self._missing else ""
+            self._tell(f"{name} is there{rest}")
+        elif self._end is None and not is_there:
+            self._missing.append(name)
+            self._tell(f"{name} is gone from the bus")
 
     def _is_all_over(self, now: float) -> bool:
         """Whether nothing more can come, now that nothing has."""
@@ -170,7 +196,8 @@ class OperatorSession:
 
     def _ending(self) -> Ending:
         if self._end is not None:
-            return Ending(self._end.outcome, self._end.wall_s, self._digest)
+            end = self._end
+            return Ending(end.outcome, end.wall_s, self._digest, end.punctuality)
         if self._group.exit_status(topics.WORLD):
             return ending_by_death(self._group, topics.WORLD, self._tick)
         return aborted(self._given_up(time.monotonic()) or LOST_WORD, self._tick)

@@ -8,6 +8,7 @@ import socket
 import subprocess
 import sys
 import time
+import uuid
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,12 +17,14 @@ from onehop.contracts import topics
 from onehop.contracts.errors import InputError
 from onehop.contracts.operation import Death
 from onehop.contracts.printable import printable
-from onehop.node.bus import make_credentials
+from onehop.mission.placement import Placement
+from onehop.node.identity import Identity, make_credentials
 from onehop.node.startup import (
     CREDENTIALS_VARIABLE,
     PASSWORD_VARIABLE,
     PROGRAM_FAILED,
     WORLD_IS_GONE,
+    certificate,
 )
 from onehop.programs.host import ACCOUNT_LINES
 from onehop.wire.summary import Process
@@ -59,6 +62,12 @@ def free_endpoint() -> str:
         return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
+def on_loopback() -> Placement:
+    """A mission of its own on this machine."""
+    endpoint = free_endpoint()
+    return Placement(f"onehop-{uuid.uuid4().hex[:8]}", endpoint, endpoint)
+
+
 @dataclass(slots=True)
 class _Child:
     """The latest process of a name. incarnation: how often it was started again."""
@@ -71,8 +80,9 @@ class _Child:
 class ProcessGroup:
     """All children of one mission. Leaving the context ends every one of them.
 
-    Each gets its own password through its environment, a lifeline that ends it when this process dies,
-    and a file in the folder `words` for what it says. If nobody said anything the folder goes.
+    Each gets its own password through its environment, or is told where its certificate is, a lifeline
+    that ends it when this process dies, and a file in the folder `words` for what it says. If nobody
+    said anything the folder goes. What the placement has on other hosts is not started here.
     programs: where robots and radio look for what is not installed. commands: of robots that are not
     ours; they are started in the folder `programs`, with what ours are told. Raises InputError when this
     system does not let so many processes work together.
@@ -80,23 +90,20 @@ class ProcessGroup:
 
     def __init__(
         self,
-        endpoint: str,
-        mission: str,
+        placement: Placement,
         robots: Sequence[int],
         words: Path,
         programs: str,
         commands: Mapping[int, Sequence[str]],
     ) -> None:
-        self._endpoint = endpoint
-        self._mission = mission
+        self._placement = placement
         self._words = words
         self._programs = programs
         self._search = ["--programs", programs] if programs else []
         self._commands = commands
-        others = (topics.RADIO, topics.RECORDER, topics.OPERATOR, topics.INJECTOR)
-        names = [*others, *map(topics.robot_name, robots)]
+        names = topics.clients(robots)
         require_descriptors(len(names))
-        self._passwords = make_credentials(names)
+        self._passwords = make_credentials(names) if placement.keys is None else {}
         self._lifeline, self._keep_open = os.pipe()
         self._children: dict[str, _Child] = {}
         self.processes: list[Process] = []
@@ -113,9 +120,14 @@ class ProcessGroup:
         if not self.said_something:
             shutil.rmtree(self._words, ignore_errors=True)
 
-    def password(self, name: str) -> str:
-        """What the bus knows a process by."""
-        return self._passwords[name]
+    def identity(self, name: str) -> Identity:
+        """What the bus knows a process by. Raises InputError when its certificate is of no use."""
+        keys = self._placement.keys
+        return self._passwords[name] if keys is None else certificate(keys, name)
+
+    def is_here(self, name: str) -> bool:
+        """Whether a process is a child of this one, and not started on another host."""
+        return name not in self._placement.remote
 
     @property
     def said_something(self) -> bool:
@@ -123,16 +135,16 @@ class ProcessGroup:
         return any(file.stat().st_size for file in self._words.glob("*"))
 
     def start_world(self, arguments: Sequence[str]) -> None:
-        self._start(topics.WORLD, "world_server", [*arguments, "--listen", self._endpoint])
+        self._start(topics.WORLD, "world_server", [*arguments, *self._placement.world_arguments()])
 
     def start_radio(self) -> None:
-        self._start(topics.RADIO, "radio_proxy", ["--connect", self._endpoint, *self._search])
+        arguments = [*self._placement.client_arguments(), *self._search]
+        self._start(topics.RADIO, "radio_proxy", arguments)
 
     def start_recorder(self, out: Path, with_file: bool, claim: int) -> None:
         """claim: descriptor that holds the folder `out`, from now on for the recorder too."""
         arguments = [
-            "--connect",
-            self._endpoint,
+            *self._placement.client_arguments(),
             "--out",
             str(out),
             *([] if with_file else ["--no-file"]),
@@ -141,7 +153,8 @@ class ProcessGroup:
 
     def start_robot(self, robot: int) -> None:
         """Raises InputError when its command names nothing that can be started."""
-        name, arguments = topics.robot_name(robot), ["--id", str(robot), "--connect", self._endpoint]
+        name = topics.robot_name(robot)
+        arguments = ["--id", str(robot), *self._placement.client_arguments()]
         command = self._commands.get(robot)
         if command is None:
             self._start(name, "robot_agent", [*arguments, *self._search])
@@ -169,10 +182,10 @@ class ProcessGroup:
         environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PATH": path}
         if name in self._passwords:
             environment[PASSWORD_VARIABLE] = self._passwords[name]
-        else:
+        elif self._passwords:
             words = (f"{user}:{password}" for user, password in self._passwords.items())
             environment[CREDENTIALS_VARIABLE] = " ".join(words)
-        shared = ["--mission", self._mission, "--lifeline", str(self._lifeline)]
+        shared = ["--mission", self._placement.mission, "--lifeline", str(self._lifeline)]
         with self._file(name).open("ab") as stderr:
             process = subprocess.Popen(
                 [*command, *shared, *arguments],
@@ -190,7 +203,8 @@ class ProcessGroup:
 
     def send(self, name: str, number: signal.Signals) -> None:
         """Send a signal to a child, if it still runs."""
-        self._children[name].process.send_signal(number)
+        if self.is_here(name):
+            self._children[name].process.send_signal(number)
 
     def exit_status(self, name: str) -> int | None:
         """Exit status of a child, negative for a signal, None while it runs."""

@@ -1,6 +1,7 @@
 """How a command finds a mission that runs, and the way in: a file in the folder of the mission's output.
 
-Only its owner can read it: it holds the password of the injector, who may order faults and nothing else.
+Only its owner can read it: it holds the password of the injector, who may order faults and nothing else,
+or says where the injector's certificate is.
 A list of the missions of this user lies in their runtime folder (XDG_RUNTIME_DIR) or state folder
 (XDG_STATE_HOME, ~/.local/state), with nothing in it but where each mission's output goes.
 """
@@ -12,7 +13,11 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+from onehop.contracts import topics
 from onehop.contracts.errors import InputError
+from onehop.mission.placement import Placement
+from onehop.node.identity import Identity
+from onehop.node.startup import certificate
 from onehop.wire.output_folder import REMEDY, explained
 
 FILE = "running.json"
@@ -21,12 +26,32 @@ FILE = "running.json"
 
 @dataclass(frozen=True, slots=True)
 class Rendezvous:
-    """The way into one mission. mission: prefix of its keys. pid: of its launcher."""
+    """The way into one mission. mission: prefix of its keys. pid: of its launcher.
+
+    password: of the injector, or else keys: the folder of certificates.
+    """
 
     mission: str
     endpoint: str
     password: str
     pid: int
+    keys: str = ""
+
+    @property
+    def entry(self) -> str:
+        """What the list of missions calls it."""
+        return f"{self.mission}.{self.pid}"
+
+    def identity(self) -> Identity:
+        """The injector's. Raises InputError when its certificate is of no use."""
+        return certificate(Path(self.keys), topics.INJECTOR) if self.keys else self.password
+
+
+def entrance(placement: Placement, injector: Identity, pid: int) -> Rendezvous:
+    """The way into a mission that this process runs."""
+    password = injector if isinstance(injector, str) else ""
+    keys = "" if placement.keys is None else str(placement.keys)
+    return Rendezvous(placement.mission, placement.connect, password, pid, keys)
 
 
 @contextlib.contextmanager
@@ -38,7 +63,7 @@ def published(folder: Path, way_in: Rendezvous) -> Iterator[None]:
         descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with open(descriptor, "w") as file:
             json.dump(asdict(way_in), file)
-    entry = _list_folder() / way_in.mission
+    entry = _list_folder() / way_in.entry
     with contextlib.suppress(OSError):  # without the list, `--mission` finds it
         entry.parent.mkdir(parents=True, exist_ok=True, mode=0o700)
         entry.write_text(str(folder.resolve()))
@@ -77,7 +102,7 @@ def running() -> list[Path]:
         for entry in sorted(_list_folder().iterdir()):
             folder = Path(entry.read_text())
             way_in = _read(folder)
-            if way_in is not None and way_in.mission == entry.name:
+            if way_in is not None and way_in.entry == entry.name:
                 folders.append(folder)
             else:
                 entry.unlink()

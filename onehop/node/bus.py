@@ -6,11 +6,10 @@ depend on that order. Liveliness changes come through the same channel. The chan
 network thread fills it without Python's interpreter lock, and the process's one thread takes from it. A
 Python callback costs a thread switch or two more for each message.
 
-No thread outlives its session: the pulse and the threads of Python callbacks end before it is closed.
+No thread outlives its session: the alarm and the threads of Python callbacks end before it is closed.
 """
 
 import contextlib
-import hashlib
 import json
 import os
 import secrets
@@ -27,7 +26,9 @@ import zenoh
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.node import peer_limits
+from onehop.node.alarm import Alarm
 from onehop.node.gate import Gate, limit_unread
+from onehop.node.identity import Certificate, Identity, proof, session_id
 from onehop.node.parts import PART_BYTES, Parts, last_part, leading_parts
 from onehop.node.rights import access_control
 
@@ -38,9 +39,6 @@ GONE = b"gone"
 
 CHANNEL_MESSAGES = 100_000
 """Messages that may wait for a process. When there are more its peers wait too: nothing is dropped."""
-
-PULSE_S = 0.1
-"""How often a process that waits with a time limit looks at the clock."""
 
 CONNECT_TIMEOUT_MS = 300_000
 """How long a client waits for the router to appear: the first world of an installation compiles its
@@ -67,7 +65,7 @@ LOW_LATENCY = (topics.RADIO, topics.robot_name(""))
 """Beginnings of the names of those whom every tick waits for: their links are of Zenoh's low-latency
 transport, which writes from the thread of the sender instead of waking another one."""
 
-_QUIET = {
+QUIET = {
     "scouting/multicast/enabled": False,
     "scouting/gossip/enabled": False,
     "transport/shared_memory/enabled": False,
@@ -75,16 +73,6 @@ _QUIET = {
     "timestamping/enabled": False,
 }
 """What nobody here uses. Without priorities a link is of low latency if both of its ends ask for it."""
-
-
-def make_credentials(names: Iterable[str]) -> dict[str, str]:
-    """A fresh password for every name of a mission."""
-    return {name: secrets.token_hex(16) for name in names}
-
-
-def session_id(password: str) -> str:
-    """The id of the one session that may use a password: 16 bytes in hexadecimal, no zero in front."""
-    return "1" + hashlib.sha256(password.encode()).hexdigest()[:31]
 
 
 class Bus:
@@ -103,7 +91,7 @@ class Bus:
         self._kept: list[Any] = []
         self._called: list[Any] = []
         self._callback_ends: list[SimpleQueue[threading.Thread]] = []
-        self._pulse: threading.Thread | None = None
+        self._alarm: Alarm | None = None
         self._closed = threading.Event()
         if gate is not None:
             links = session.info.declare_link_events_listener(self._callback(gate.on_link))
@@ -124,8 +112,8 @@ class Bus:
     def _end_threads(self) -> None:
         """Wait for everything that may still use the session: on a closed one it would raise."""
         self._channel.undeclare()  # type: ignore[no-untyped-call]  # lets go who waits for room in it
-        if self._pulse is not None:
-            self._pulse.join()
+        if self._alarm is not None:
+            self._alarm.end()
         for declared in self._called:
             declared.undeclare()
         for end in self._callback_ends:
@@ -140,12 +128,16 @@ class Bus:
     def _key(self, key: str) -> str:
         return f"{self._mission}/{key}"
 
-    def publisher(self, key: str, express: bool = True) -> Callable[[bytes], None]:
-        """A function that puts bytes on a key. express: send at once rather than batch."""
+    def publisher(
+        self, key: str, express: bool = True, may_drop: bool = False
+    ) -> Callable[[bytes], None]:
+        """A function that puts bytes on a key. express: send at once rather than batch.
+
+        may_drop: what does not fit into a queue is dropped, and nobody waits until it does.
+        """
+        control = zenoh.CongestionControl.DROP if may_drop else zenoh.CongestionControl.BLOCK
         publisher = self._session.declare_publisher(
-            self._key(key),
-            congestion_control=zenoh.CongestionControl.BLOCK,
-            express=express,
+            self._key(key), congestion_control=control, express=express
         )
         self._kept.append(publisher)
         _, _, to_or_by = key.partition("/")
@@ -195,31 +187,39 @@ class Bus:
         """
         channel = self._channel
         while True:
-            sample = channel.try_recv() or channel.recv()
-            what = str(sample.key_expr)[self._prefix :]
-            data = sample.payload.to_bytes()
-            if not (self._parts.waiting or what.endswith(topics.PART)):
-                return what, data
-            whole = self._parts.joined(what, data)
-            if whole is not None:
-                return what, whole
+            received = self._whole(channel.try_recv() or channel.recv())
+            if received is not None:
+                return received
+
+    def _whole(self, sample: zenoh.Sample) -> tuple[str, bytes] | None:
+        """A message with the parts that came before it; None if it is a part itself."""
+        what = str(sample.key_expr)[self._prefix :]
+        data = sample.payload.to_bytes()
+        if not (self._parts.waiting or what.endswith(topics.PART)):
+            return what, data
+        whole = self._parts.joined(what, data)
+        return None if whole is None else (what, whole)
 
     def receive_by(self, deadline: float) -> tuple[str, bytes] | None:
         """The next message; None when there is none by the deadline (time.monotonic() [s])."""
-        if self._pulse is None:
-            self._pulse = threading.Thread(target=self._beat, name="pulse", daemon=True)
-            self._pulse.start()
+        if self._alarm is None:
+            self._alarm = Alarm(lambda: self.tell_self(topics.PULSE))
         pulse = (self._own + topics.PULSE)[self._prefix :]
         while True:
+            self._alarm.ring_by(deadline)
             what, data = self.receive()
             if what != pulse:
                 return what, data
             if time.monotonic() >= deadline:
                 return None
 
-    def _beat(self) -> None:
-        while not self._closed.wait(PULSE_S):
-            self.tell_self(topics.PULSE)
+    def poll(self) -> tuple[str, bytes] | None:
+        """The next message if it is there already."""
+        while (sample := self._channel.try_recv()) is not None:
+            received = self._whole(sample)
+            if received is not None:
+                return received
+        return None
 
     def shut_out(self, name: str) -> None:
         """End the session of a name, and do not take another one. It needs names that are known."""
@@ -275,31 +275,44 @@ class Bus:
 
 def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | None = None) -> Bus:
     """The world's session. credentials: passwords by name; without them anyone may say anything."""
-    settings: dict[str, Any] = {
-        "mode": "router",
-        "listen/endpoints": [endpoint],
-        "scouting/delay": 0,
-        "transport/unicast/lowlatency": True,
-        **peer_limits.SETTINGS,
-    }
     if credentials is None:
-        return Bus(_open_router(settings), mission, topics.WORLD)
+        return Bus(_open_router(endpoint, {}), mission, topics.WORLD)
     with tempfile.TemporaryFile("w") as dictionary:  # it has no name that could outlive this process
         dictionary.writelines(f"{name}:{word}\n" for name, word in credentials.items())
         dictionary.flush()
-        settings["transport/auth/usrpwd"] = {
+        login = {
             "user": topics.WORLD,
             "password": secrets.token_hex(16),
             "dictionary_file": f"/dev/fd/{dictionary.fileno()}",
         }
         sessions = {name: session_id(word) for name, word in credentials.items()}
-        settings["access_control"] = access_control(mission, sessions)
-        return Bus(_open_router(settings), mission, topics.WORLD, Gate(sessions))
+        rights = access_control(mission, sessions, "usernames")
+        settings = {"transport/auth/usrpwd": login, "access_control": rights}
+        return Bus(_open_router(endpoint, settings), mission, topics.WORLD, Gate(sessions))
 
 
-def _open_router(settings: Mapping[str, Any]) -> zenoh.Session:
-    session = _open(settings)
-    limit_unread(int(settings["listen/endpoints"][0].rpartition(":")[2]))
+def open_certified_router(
+    mission: str, endpoint: str, certificate: Certificate, names: Iterable[str]
+) -> Bus:
+    """The world's session, where everyone has a certificate. names: who may come."""
+    sessions = {name: session_id(name) for name in names}
+    rights = access_control(mission, sessions, "cert_common_names")
+    settings = {**certificate.settings("listen"), "access_control": rights}
+    gate = Gate(sessions, certified=True)
+    return Bus(_open_router(endpoint, settings), mission, topics.WORLD, gate)
+
+
+def _open_router(endpoint: str, settings: Mapping[str, Any]) -> zenoh.Session:
+    own = {
+        "mode": "router",
+        "listen/endpoints": [endpoint],
+        "scouting/delay": 0,
+        "transport/unicast/lowlatency": True,
+        **peer_limits.SETTINGS,
+        **settings,
+    }
+    session = _open(own)
+    limit_unread(int(endpoint.rpartition(":")[2]))
     return session
 
 
@@ -307,7 +320,7 @@ def open_client(
     mission: str,
     endpoint: str,
     name: str,
-    password: str | None,
+    identity: Identity | None,
     timeout_ms: int = CONNECT_TIMEOUT_MS,
 ) -> Bus:
     """The session of everyone else. Raises MissionError if the router does not appear in time."""
@@ -320,9 +333,8 @@ def open_client(
         "listen/endpoints": [],
         "transport/unicast/lowlatency": name.startswith(LOW_LATENCY),
     }
-    if password is not None:
-        settings["transport/auth/usrpwd"] = {"user": name, "password": password}
-        settings["id"] = session_id(password)
+    if identity is not None:
+        settings |= proof(name, identity)
     return Bus(_open(settings), mission, name)
 
 
@@ -330,7 +342,7 @@ def _open(settings: Mapping[str, Any]) -> zenoh.Session:
     threads = ROUTER_THREADS if settings["mode"] == "router" else ONE_THREAD
     os.environ.setdefault("ZENOH_RUNTIME", threads)
     config = zenoh.Config()
-    for key, value in {**_QUIET, "transport/link/tx/lease": LEASE_MS, **settings}.items():
+    for key, value in {**QUIET, "transport/link/tx/lease": LEASE_MS, **settings}.items():
         config.insert_json5(key, json.dumps(value))
     try:
         return zenoh.open(config)

@@ -6,6 +6,7 @@ here, by the socket's own means, since Zenoh has none.
 """
 
 import contextlib
+import ipaddress
 import os
 import socket
 import threading
@@ -18,10 +19,14 @@ from onehop.node.peer_limits import UNREAD_MS
 
 
 class Gate:
-    """The gate of one router. sessions: the session id that each name has to come with."""
+    """The gate of one router. sessions: the session id that each name has to come with.
 
-    def __init__(self, sessions: Mapping[str, str]) -> None:
+    certified: they come with certificates, whose common names have to be those of their sessions.
+    """
+
+    def __init__(self, sessions: Mapping[str, str], certified: bool = False) -> None:
         self._sessions = dict(sessions)
+        self._certified = {session: name for name, session in sessions.items()} if certified else None
         self._welcome = set(sessions.values())
         self._connected: dict[str, str] = {}
         self._lock = threading.Lock()
@@ -32,13 +37,16 @@ class Gate:
         with self._lock:
             if event.kind == zenoh.SampleKind.PUT:
                 self._connected[session] = peer
-                welcome = session in self._welcome
+                welcome = session in self._welcome and self._is_genuine(session, event.link)
             else:
                 welcome = True
                 if self._connected.get(session) == peer:
                     del self._connected[session]
         if not welcome:
             _hang_up(peer)
+
+    def _is_genuine(self, session: str, link: zenoh.Link) -> bool:
+        return self._certified is None or self._certified[session] == link.auth_identifier
 
     def shut_out(self, name: str) -> None:
         """End the connection of this name, and any that it opens from now on."""
@@ -67,14 +75,22 @@ def limit_unread(port: int) -> None:
 
 
 def _hang_up(peer: str) -> None:
-    """End the connection to a peer by its Zenoh locator, tcp/ADDRESS:PORT."""
-    port = int(peer.rpartition(":")[2])
+    """End the connection to a peer by its Zenoh locator, e.g. tcp/ADDRESS:PORT."""
+    host, _, port = peer.partition("/")[2].rpartition(":")
+    end_of_peer = _address(host.strip("[]")), int(port)
 
     def end(own: socket.socket) -> None:
-        if own.getpeername()[1] == port:
+        address, port = own.getpeername()[:2]
+        if (_address(address), port) == end_of_peer:
             own.shutdown(socket.SHUT_RDWR)
 
     _with_sockets(end)
+
+
+def _address(text: str) -> ipaddress.IPv4Address | ipaddress.IPv6Address:
+    """An address, that of IPv4 also where a socket of IPv6 took it."""
+    address = ipaddress.ip_address(text.partition("%")[0])
+    return getattr(address, "ipv4_mapped", None) or address
 
 
 def _with_sockets(act: Callable[[socket.socket], None]) -> None:

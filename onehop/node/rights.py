@@ -1,8 +1,8 @@
 """Who may put, hear, ask, announce and watch what on the bus: one table, and Zenoh's form of it.
 
 The world is the router and may do everything; what stands here is held against everyone else by the
-router, which knows each of them by the password of its user name. Expressions stand without the
-mission's prefix.
+router, which knows each of them by the password of its user name, or by its certificate. Expressions
+stand without the mission's prefix.
 """
 
 from collections.abc import Iterator, Mapping
@@ -35,6 +35,9 @@ def rights(name: str) -> Rights:
     if name == topics.RECORDER:
         puts.append(topics.to(topics.OPERATOR, topics.DIGEST))
         audience.append(topics.heard(topics.OPERATOR))
+    if name == topics.RADIO:
+        puts.append(topics.to(topics.robot_name("$*"), topics.HEARD))
+        audience.append(topics.heard(topics.robot_name("$*")))
     return Rights(
         puts=tuple(puts),
         hears=topics.heard(name),
@@ -45,19 +48,34 @@ def rights(name: str) -> Rights:
     )
 
 
-def access_control(mission: str, sessions: Mapping[str, str]) -> dict[str, Any]:
+WORLD_MESSAGES = (
+    "put", "delete", "declare_subscriber", "query", "reply", "declare_queryable", "liveliness_token",
+    "declare_liveliness_subscriber", "liveliness_query",
+)  # fmt: skip
+"""All that a world may say and hear that is no router itself."""
+
+
+def access_control(
+    mission: str, sessions: Mapping[str, str], known_by: str, world: str | None = None
+) -> dict[str, Any]:
     """Zenoh's `access_control` that grants each name its rights and nothing else.
 
     sessions: the one session id of each name. The router takes no second session with an id that is
-    there already, so a name cannot be used twice at once.
+    there already, so a name cannot be used twice at once. known_by: what Zenoh calls that by which it
+    knows a name, "usernames" (with passwords) or "cert_common_names". world: session id of a world that
+    is no router itself.
     """
     rules: list[dict[str, Any]] = []
     subjects: list[dict[str, Any]] = []
     policies: list[dict[str, Any]] = []
+    granted_to = {name: list(_rules(mission, name)) for name in sessions}
+    if world is not None:
+        sessions = {**sessions, topics.WORLD: world}
+        granted_to[topics.WORLD] = [_everything(mission)]
     for name, session in sessions.items():
-        granted = list(_rules(mission, name))
+        granted = granted_to[name]
         rules += granted
-        subjects.append({"id": name, "usernames": [name], "zids": [session]})
+        subjects.append({"id": name, known_by: [name], "zids": [session]})
         policies.append({"id": name, "rules": [rule["id"] for rule in granted], "subjects": [name]})
     return {
         "enabled": True,
@@ -92,3 +110,13 @@ def _rules(mission: str, name: str) -> Iterator[dict[str, Any]]:
             "messages": list(messages),
             "key_exprs": [f"{mission}/{key}" for key in keys],
         }
+
+
+def _everything(mission: str) -> dict[str, Any]:
+    return {
+        "id": topics.WORLD,
+        "permission": "allow",
+        "flows": ["ingress", "egress"],
+        "messages": list(WORLD_MESSAGES),
+        "key_exprs": [f"{mission}/**"],
+    }

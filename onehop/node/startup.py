@@ -9,16 +9,22 @@ import signal
 import sys
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from pathlib import Path
 
 from onehop.contracts import topics
-from onehop.contracts.errors import MissionError, OnehopError
+from onehop.contracts.errors import InputError, MissionError, OnehopError
 from onehop.node import lifeline
-from onehop.node.bus import Bus, open_client
+from onehop.node.bus import Bus, open_certified_router, open_client, open_router
+from onehop.node.identity import TLS, Certificate, Identity
 from onehop.node.own_settings import keep_to_own_settings
 
+DEFAULT_MISSION = "onehop"
+"""Prefix of a mission's keys where nobody gives one: several hosts need not be told."""
+
 PASSWORD_VARIABLE = "ONEHOP_PASSWORD"
-"""Environment variable with a process's password; an argument would show in ps."""
+"""Environment variable with a process's password; an argument would show in ps. What the process starts
+does not inherit it."""
 
 CREDENTIALS_VARIABLE = "ONEHOP_CREDENTIALS"
 """Environment variable of the world: all names and passwords, as name:password words."""
@@ -36,14 +42,23 @@ PROGRAM_FAILED = 4
 def arguments(program: str, purpose: str) -> argparse.ArgumentParser:
     """The options that all processes of a mission share."""
     parser = argparse.ArgumentParser(prog=f"python -m {program}", description=purpose)
-    parser.add_argument("--mission", default="onehop", help="prefix of the mission's keys on the bus")
+    parser.add_argument(
+        "--mission", default=DEFAULT_MISSION, help="prefix of the mission's keys on the bus"
+    )
     parser.add_argument("--lifeline", type=int, help=argparse.SUPPRESS)
     return parser
 
 
 def add_connect(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--connect", required=True, metavar="ENDPOINT", help="the world's bus, e.g. tcp/127.0.0.1:7447"
+        "--connect", required=True, metavar="ENDPOINT", help="the world's bus, e.g. tls/10.0.0.1:7447"
+    )
+    add_keys(parser)
+
+
+def add_keys(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--keys", type=Path, metavar="DIR", help="folder of certificates (onehop keys): for tls/..."
     )
 
 
@@ -64,15 +79,52 @@ def start(options: argparse.Namespace) -> None:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+def be_on_time(is_ours: bool = True) -> None:
+    """Let this process run as soon as it wakes up: it has a schedule.
+
+    Where the system allows it (CAP_SYS_NICE, RLIMIT_RTPRIO) it goes before all that is not in real time
+    (SCHED_RR, as ros2_control's controller manager asks for SCHED_FIFO), else by the usual scheduling.
+    is_ours: it is none of anybody's programs, and goes before those. Threads that there are already are
+    told one by one.
+    """
+    if hasattr(os, "SCHED_BATCH"):
+        for thread in map(int, os.listdir("/proc/self/task")):
+            for policy, priority in ((os.SCHED_OTHER, 0), (os.SCHED_RR, 2 if is_ours else 1)):
+                with contextlib.suppress(OSError):  # ended meanwhile, or not allowed
+                    os.sched_setscheduler(thread, policy, os.sched_param(priority))
+
+
 def connect(options: argparse.Namespace, name: str) -> Bus:
-    """Open this process's session with its own identity."""
-    return open_client(options.mission, options.connect, name, os.environ.get(PASSWORD_VARIABLE))
+    """Open this process's session with its own identity. Raises InputError or MissionError."""
+    identity: Identity | None = os.environ.pop(PASSWORD_VARIABLE, None)
+    if require_keys_for_tls(options.connect, options.keys):
+        identity = certificate(options.keys, name)
+    return open_client(options.mission, options.connect, name, identity)
 
 
-def credentials() -> dict[str, str] | None:
-    """The world's list of passwords; None when it was given none, and then anyone may speak."""
-    words = os.environ.get(CREDENTIALS_VARIABLE)
-    return None if words is None else dict(word.split(":", 1) for word in words.split())
+def listen(options: argparse.Namespace, names: Iterable[str]) -> Bus:
+    """Open the world's session, the router's. names: who may come, if they have certificates."""
+    if require_keys_for_tls(options.listen, options.keys):
+        own = certificate(options.keys, topics.WORLD)
+        return open_certified_router(options.mission, options.listen, own, names)
+    words = os.environ.pop(CREDENTIALS_VARIABLE, None)
+    credentials = None if words is None else dict(word.split(":", 1) for word in words.split())
+    return open_router(options.mission, options.listen, credentials)
+
+
+def require_keys_for_tls(endpoint: str, keys: Path | None) -> bool:
+    """Whether an endpoint is one for certificates. Raises InputError if there are none, or in vain."""
+    if endpoint.startswith(TLS) != (keys is not None):
+        wrong = "--keys is missing" if keys is None else f"--keys {keys} is for tls/..., and this is not"
+        raise InputError(endpoint, wrong, "tls/HOST:PORT with --keys DIR, a folder made by onehop keys")
+    return keys is not None
+
+
+def certificate(keys: Path, name: str) -> Certificate:
+    """A process's own certificate. Raises InputError when it is of no use."""
+    from onehop.node.certificates import own_certificate  # a library of 50 ms that few missions need
+
+    return own_certificate(keys, name)
 
 
 def briefing(bus: Bus, name: str, announce: Callable[[], None] = lambda: None) -> bytes:

@@ -77,7 +77,11 @@ def check(scenario: Scenario, origin: str, robots: Iterable[int] | None = None) 
 
 
 def require_programs(scenario: Scenario, origin: str) -> None:
-    """See that every robot can be run in this process. origin: see `check`. Raises ScenarioError."""
+    """See that a mission can be run in one process. origin: see `check`. Raises ScenarioError."""
+    if scenario.clock.is_realtime:
+        what = "one process has no real time: in it everyone waits for everyone"
+        remedy = "onehop run with --driver processes, or --set clock.mode='\"lockstep\"'"
+        raise ScenarioError(f"{origin}: clock.mode", what, remedy)
     for number, one in enumerate(scenario.robots):
         if one.command:
             what = f"robot {one.id} is a process of its own, and has no program to run in this one"

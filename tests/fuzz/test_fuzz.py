@@ -13,7 +13,7 @@ from onehop.contracts.errors import OnehopError
 from tests.fuzz.fuzzer import GOOD, Fuzzer, jobs_of_this_machine
 from tests.fuzz.sandbox import MEMORY_BYTES, Child, Outcome
 
-CASES = {"scenario": 60, "map": 60, "message": 60, "log": 80}
+CASES = {"scenario": 40, "map": 30, "message": 40, "log": 30}
 SEED = 1
 
 

@@ -5,7 +5,7 @@ import os
 import subprocess
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,8 @@ STARTED: "list[Mission]" = []
 class Mission:
     """`onehop run` of the small scene in a child, with its log growing in `out`.
 
-    shell: what a shell does before, such as `ulimit`. environment: added to ours.
+    shell: what a shell does before, such as `ulimit`. options: of the command. within: what the command
+    is started by, such as `ip netns exec`. environment: added to ours.
     """
 
     def __init__(
@@ -31,6 +32,8 @@ class Mission:
         folder: Path,
         *settings: str,
         shell: str = "",
+        options: Sequence[str] = (),
+        within: Sequence[str] = (),
         environment: Mapping[str, str] | None = None,
     ) -> None:
         self.out = folder / "out"
@@ -45,9 +48,11 @@ class Mission:
             "--json",
             "--out",
             str(self.out),
+            *options,
         ]
         for setting in settings:
             command += ["--set", setting]
+        command = [*within, *command]
         if shell:
             command = ["bash", "-c", f'{shell}; exec "$@"', "bash", *command]
         self.child = subprocess.Popen(

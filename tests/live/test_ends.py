@@ -13,7 +13,8 @@ from typing import Any
 import pytest
 
 from onehop.mission.processes import free_endpoint
-from onehop.node.bus import LEASE_MS, make_credentials, open_client, open_router
+from onehop.node.bus import LEASE_MS, open_client, open_router
+from onehop.node.identity import make_credentials
 from onehop.wire.log_reader import LogFile, digest
 from tests.live.mission import DEADLINE_S, Mission, gone, proven
 from tests.onehop.scenes import field, log_of

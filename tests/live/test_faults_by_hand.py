@@ -142,7 +142,7 @@ def test_the_injector_may_order_faults_and_nothing_else(mission: Mission) -> Non
     way_in = way_into(mission.out)
     for pid in mission.children().values():
         assert way_in.password not in Path(f"/proc/{pid}/cmdline").read_text()
-    with open_client(way_in.mission, way_in.endpoint, topics.INJECTOR, way_in.password) as bus:
+    with open_client(way_in.mission, way_in.endpoint, topics.INJECTOR, way_in.identity()) as bus:
         bus.publisher(topics.by(topics.OPERATOR, topics.CONTROL))(b"stop")
         bus.publisher(topics.to(topics.robot_name(3), topics.KILL))(b"")
         bus.publisher(topics.by(topics.INJECTOR, topics.FAULT))(b"garbage")

@@ -19,7 +19,8 @@ import zenoh
 from onehop.contracts.errors import MissionError
 from onehop.mission.processes import free_endpoint
 from onehop.node import startup
-from onehop.node.bus import ALIVE, GONE, Bus, make_credentials, open_client, open_router, session_id
+from onehop.node.bus import ALIVE, GONE, Bus, open_client, open_router
+from onehop.node.identity import make_credentials, session_id
 from tests.live.hostile import open_session
 from tests.live.mission import DEADLINE_S, Mission
 

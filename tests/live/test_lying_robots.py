@@ -13,7 +13,8 @@ from onehop.contracts.geometry import Pose, Twist
 from onehop.contracts.messages import Action, Presence, Transmission, Truth
 from onehop.contracts.team import Mode, Shape, Status
 from onehop.mission.processes import free_endpoint
-from onehop.node.bus import Bus, make_credentials, open_client, open_router
+from onehop.node.bus import Bus, open_client, open_router
+from onehop.node.identity import make_credentials
 from onehop.wire.codec import encode
 from onehop.wire.log_reader import digest
 from tests.live.mission import Mission, proven

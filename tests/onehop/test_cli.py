@@ -11,28 +11,12 @@ from pathlib import Path
 import pytest
 from mcap.reader import make_reader
 
+from onehop.analysis.log import open_log
 from onehop.wire.log_reader import LogFile, digest
+from tests.onehop.command_line import in_shell, onehop
 from tests.onehop.scenes import FIELD, field, log_of
 
 MAP1 = Path(__file__).parents[2] / "scenarios" / "map1.toml"
-
-
-def onehop(
-    *arguments: str | Path, cwd: Path | None = None, shell: str = "", **environment: str
-) -> subprocess.CompletedProcess[str]:
-    """Run the command. shell: what a shell does before it, such as `ulimit`."""
-    command = [sys.executable, "-m", "onehop", *map(str, arguments)]
-    if shell:
-        command = ["bash", "-c", f'{shell}; exec "$@"', "bash", *command]
-    return subprocess.run(
-        command,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-        cwd=cwd,
-        env={**os.environ, **environment},
-    )
 
 
 @pytest.fixture(scope="module")
@@ -111,8 +95,12 @@ def test_an_inline_run_gives_the_promised_keys_and_files(tmp_path: Path) -> None
     assert summary["outcome"] == "arrived"
     assert set(summary) == {
         "outcome", "reason", "arrived", "lost", "leaders", "ticks", "sim_s", "wall_s", "ticks_per_s",
-        "real_time_factor", "processes", "digest", "log", "collisions",
+        "real_time_factor", "processes", "digest", "log", "collisions", "energy",
     }  # fmt: skip
+    assert [entry["robot"] for entry in summary["energy"]] == [1, 2, 3, 4]
+    spent = open_log(tmp_path / "here" / "mission.mcap").table("energy").of(2)
+    assert summary["energy"][1]["drive_j"] == pytest.approx(spent["drive_j"].sum(), abs=0.1)
+    assert summary["energy"][1]["radio_j"] == pytest.approx(spent["radio_j"].sum(), abs=0.1)
     assert summary["processes"] == []
     assert json.loads((tmp_path / "here" / "summary.json").read_text()) == summary
     assert (tmp_path / "here" / "trajectory.png").stat().st_size > 10_000
@@ -177,7 +165,7 @@ def test_doctor_finds_everything_that_a_run_needs_here() -> None:
     [("ulimit -n 30", "open files"), ("ulimit -f 0", "working folder")],
 )
 def test_doctor_tries_what_it_vouches_for(tmp_path: Path, limit: str, check: str) -> None:
-    answer = onehop("doctor", "--json", cwd=tmp_path, shell=limit)
+    answer = in_shell("doctor", "--json", cwd=tmp_path, shell=limit)
     assert answer.returncode == 1
     found = json.loads(answer.stdout)
     assert found["healthy"] is False
@@ -207,7 +195,7 @@ def test_a_folder_in_the_place_of_the_log_is_refused_before_the_mission(tmp_path
 
 def test_a_disk_that_fills_up_is_one_line_and_the_log_stays_up_to_there(tmp_path: Path) -> None:
     (tmp_path / "field.toml").write_text(FIELD)
-    answer = onehop(
+    answer = in_shell(
         "run", "field.toml", "--driver", "inline", "--out", "out", cwd=tmp_path, shell="ulimit -f 400"
     )
     assert answer.returncode == 2
@@ -234,12 +222,12 @@ def test_a_notebooks_environment_does_no_harm(tmp_path: Path, backend: str) -> N
     (tmp_path / "field.toml").write_text(FIELD)
     environment = {"MPLBACKEND": backend, "ZENOH_RUNTIME": "garbage"}
     limit = ("--set", "clock.limit_s=1")
-    answer = onehop(
+    answer = in_shell(
         "run", "field.toml", "--driver", "inline", *limit, "--out", "out", cwd=tmp_path, **environment
     )
     assert (answer.returncode, answer.stderr.count("\n")) == (1, 1)  # a line of progress
     assert (tmp_path / "out" / "trajectory.png").stat().st_size > 10_000
-    assert onehop("doctor", **environment).returncode == 0
+    assert in_shell("doctor", **environment).returncode == 0
 
 
 PANIC = """
@@ -305,9 +293,9 @@ def test_a_figure_that_cannot_be_written_is_refused_before_the_way_is_driven(
 
 
 def test_output_that_cannot_be_written_is_one_line_and_status_2() -> None:
-    full = onehop("elect", "1,2,4", shell="exec >/dev/full")
+    full = in_shell("elect", "1,2,4", shell="exec >/dev/full")
     assert (full.returncode, full.stderr) == (2, "onehop: No space left on device\n")
-    assert onehop("elect", "1,2,4", shell="exec >&-").returncode == 0
+    assert in_shell("elect", "1,2,4", shell="exec >&-").returncode == 0
 
 
 def test_a_name_that_does_not_print_is_shown_in_one_line(tmp_path: Path) -> None:

@@ -69,7 +69,7 @@ def test_what_a_killed_launcher_has_left_is_no_mission(tmp_path: Path, left: str
         elif left == "no file":
             (out / FILE).unlink()
         elif left == "another mission":
-            entry = next((tmp_path / "runtime").rglob("onehop-1"))
+            entry = next((tmp_path / "runtime").rglob("onehop-1.*"))
             entry.rename(entry.with_name("onehop-2"))
         assert running() == []
         assert not [file for file in (tmp_path / "runtime").rglob("*") if file.is_file()]

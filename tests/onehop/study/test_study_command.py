@@ -11,6 +11,7 @@ import pytest
 from onehop import study
 from onehop.study.chapter4.failing import EXPECTED
 from onehop.study.chapter4.missions import MAPS
+from tests.onehop.command_line import onehop
 from tests.onehop.scenes import FIELD
 
 NEAR = FIELD.replace("x = 30\ny = 14", "x = 14\ny = 8").replace("size = 4", "size = 6")
@@ -108,8 +109,7 @@ def test_the_phase_diagram_is_the_same_on_one_core_and_on_two_and_in_a_notebook(
     ],
 )
 def test_what_cannot_be_run_is_one_line(arguments: tuple[str, ...], says: str, tmp_path: Path) -> None:
-    program = [sys.executable, "-m", "onehop", "study", *arguments, "--out", str(tmp_path / "out")]
-    done = subprocess.run(program, capture_output=True, text=True, check=False)
+    done = onehop("study", *arguments, "--out", tmp_path / "out")
     assert (done.returncode, done.stdout) == (2, "")
     assert len(done.stderr.splitlines()) == 1
     assert says in done.stderr

@@ -10,6 +10,7 @@ import pytest
 
 from onehop import study
 from onehop.study.sweeping import ROWS, TABLE
+from tests.onehop.command_line import onehop
 from tests.onehop.scenes import FIELD
 
 OVER = ("--over", "gains.k_rho_min=0.3,1", "--over", "faults[0].duration_s=2,8")
@@ -103,7 +104,7 @@ def test_a_table_for_people_has_each_cell_and_each_difference(tmp_path: Path) ->
     ],
 )
 def test_what_cannot_be_run_is_one_line(arguments: tuple[str, ...], says: str, tmp_path: Path) -> None:
-    done = sweep(tmp_path, *arguments, "--out", str(tmp_path / "out"))
+    done = onehop(*command(tmp_path, *arguments)[3:], "--out", tmp_path / "out")
     assert (done.returncode, done.stdout) == (2, "")
     assert len(done.stderr.splitlines()) == 1
     assert says in done.stderr

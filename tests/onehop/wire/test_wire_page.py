@@ -22,6 +22,7 @@ from onehop.contracts.printable import LONGEST
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.values import WIRE_VERSION, Wire
 from onehop.node import bus, parts, startup
+from onehop.node.identity import session_id
 from onehop.node.rights import rights
 from onehop.wire.codec import decode, encode
 from onehop.wire.journal import Digest, Journal
@@ -37,6 +38,8 @@ LAYOUTS: dict[str, type] = {
     "Pose": Pose,
     "Twist": Twist,
     "Inbox": messages.Inbox,
+    "Heard": messages.Heard,
+    "Acted": messages.Acted,
     "Reception": messages.Reception,
     "Neighbour": Neighbour,
     "Action": messages.Action,
@@ -139,8 +142,11 @@ def test_words_of_a_team_are_listed() -> None:
 def test_the_keys_are_those_of_a_robot() -> None:
     name = topics.robot_name(5)
     said = re.findall(r"^\| `(\S+)` \|", section("What is said"), flags=re.M)
-    hears = (topics.PERCEPT, topics.STOP, topics.WAKE, topics.KILL, topics.END)
-    puts = (topics.ARRIVAL, topics.OUT, topics.AWAKE, topics.FAILED)
+    hears = (
+        *(topics.PERCEPT, topics.OBSERVATION, topics.HEARD),
+        *(topics.STOP, topics.WAKE, topics.KILL, topics.END),
+    )
+    puts = (topics.ARRIVAL, topics.OUT, topics.ACTED, topics.AWAKE, topics.FAILED)
     assert said == [topics.to(name, one) for one in hears] + [topics.by(name, one) for one in puts]
     for key in (topics.to("robot-", topics.PERCEPT), topics.by("robot-", topics.PART)):
         assert key.partition("robot-")[0] in PAGE
@@ -167,7 +173,7 @@ def test_the_session_is_opened_as_our_own_robots_open_it(monkeypatch: pytest.Mon
             return lambda *_, **__: None
 
     def take(settings: Mapping[str, Any]) -> Any:
-        opened.update({**bus._QUIET, **settings})
+        opened.update({**bus.QUIET, **settings})
         return Nothing()
 
     monkeypatch.setattr(bus, "_open", take)
@@ -192,7 +198,7 @@ def test_the_numbers_are_those_of_the_code() -> None:
     assert f"exit with status {startup.PROGRAM_FAILED}" in PAGE
     assert f"{startup.WORLD_IS_GONE}: the world has gone" in PAGE
     assert f"`{startup.PASSWORD_VARIABLE}`" in PAGE
-    assert bus.session_id("x") == "1" + hashlib.sha256(b"x").hexdigest()[:31]
+    assert session_id("x") == "1" + hashlib.sha256(b"x").hexdigest()[:31]
 
 
 def test_the_example_is_the_action_that_it_says_it_is() -> None:

@@ -1,0 +1,213 @@
+"""Who comes with a certificate may do what its name may, once; who has none, or a wrong one, nothing.
+
+On loopback only. What is the same with passwords is in test_bus.py and test_hostile_peers.py.
+"""
+
+import contextlib
+import datetime
+import shutil
+import socket
+import time
+from collections.abc import Iterator
+from contextlib import ExitStack
+from pathlib import Path
+
+import pytest
+import zenoh
+
+from onehop.contracts import topics
+from onehop.contracts.errors import MissionError
+from onehop.mission import authority
+from onehop.node import startup
+from onehop.node.bus import GONE, Bus, open_certified_router, open_client
+from onehop.node.identity import session_id
+from onehop.node.parts import PART_BYTES
+from tests.live.hosts import made_keys, stranger, tls_endpoint
+
+pytestmark = pytest.mark.live
+
+TEAM = (1, 2)
+
+SOON_S = 3.0
+"""What a busy machine takes for what should be there at once."""
+
+
+class House:
+    """A router, the radio and robot-1; everyone has a certificate, and robot-2 has not come."""
+
+    def __init__(self, stack: ExitStack, keys: Path) -> None:
+        self.keys, self.endpoint = keys, tls_endpoint()
+        own = startup.certificate(keys, topics.WORLD)
+        router = open_certified_router("m", self.endpoint, own, topics.clients(TEAM))
+        self.world = stack.enter_context(router)
+        self.robot = stack.enter_context(self.client("robot-1"))
+        self.radio = stack.enter_context(self.client("radio"))
+        time.sleep(0.3)  # declarations travel by themselves; nothing announces that they have arrived
+
+    def client(self, name: str, timeout_ms: int = 5000) -> Bus:
+        identity = startup.certificate(self.keys, name)
+        return open_client("m", self.endpoint, name, identity, timeout_ms)
+
+    def still_works(self) -> None:
+        """Whether robot and world hear each other, and nothing else."""
+        self.robot.publisher("from/robot-1/word")(b"here")
+        self.world.publisher("to/robot-1/order")(b"there")
+        assert _heard(self.world) == [("robot-1/word", b"here")]
+        assert _heard(self.robot) == [("order", b"there")]
+
+
+def _heard(bus: Bus) -> list[tuple[str, bytes]]:
+    messages = []
+    deadline = time.monotonic() + SOON_S
+    while (received := bus.receive_by(deadline)) is not None:
+        messages.append(received)
+        deadline = time.monotonic() + 0.2
+    return messages
+
+
+def _is_turned_out(session: zenoh.Session) -> bool:
+    deadline = time.monotonic() + SOON_S
+    while session.info.routers_zid():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+@pytest.fixture(scope="module")
+def keys(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return made_keys(tmp_path_factory.mktemp("certificates") / "keys", TEAM)
+
+
+@pytest.fixture
+def house(keys: Path) -> Iterator[House]:
+    with ExitStack() as stack:
+        yield House(stack, keys)
+
+
+@pytest.mark.parametrize("size", [0, PART_BYTES + 1, 3_000_000])
+def test_messages_of_any_length_come_and_go(house: House, size: int) -> None:
+    data = bytes(number % 251 for number in range(size))
+    house.robot.publisher("from/robot-1/out")(data)
+    house.radio.publisher("from/radio/carried")(data)
+    house.world.publisher("to/robot-1/percept")(data)
+    assert sorted(_heard(house.world)) == [("radio/carried", data), ("robot-1/out", data)]
+    assert _heard(house.robot) == [("percept", data)]
+
+
+def test_who_has_no_certificate_gets_nowhere(house: House) -> None:
+    with pytest.raises(zenoh.ZError, match="Unable to connect"):
+        stranger(house.endpoint, None, "robot-2")
+    with pytest.raises(zenoh.ZError, match="Unable to connect"):
+        stranger(house.endpoint.replace("tls/", "tcp/"), None, "robot-2")
+    house.still_works()
+
+
+def test_a_certificate_of_another_authority_gets_nowhere(house: House, tmp_path: Path) -> None:
+    foreign = made_keys(tmp_path / "foreign", TEAM)
+    with pytest.raises(zenoh.ZError, match="Unable to connect"):
+        stranger(house.endpoint, foreign, "robot-2")
+    shutil.copy(house.keys / "robot-2" / "ca.pem", foreign / "robot-2" / "ca.pem")
+    with pytest.raises(zenoh.ZError, match="Unable to connect"):
+        stranger(house.endpoint, foreign, "robot-2")
+    house.still_works()
+
+
+def test_an_expired_certificate_gets_nowhere(
+    house: House, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    old = shutil.copytree(house.keys, tmp_path / "old")
+    monkeypatch.setattr(authority, "EARLIER", datetime.timedelta(days=3))
+    authority.issue(old, "robot-2", (), days=-1)
+    with pytest.raises(zenoh.ZError, match="Unable to connect"):
+        stranger(house.endpoint, old, "robot-2")
+    house.still_works()
+
+
+def test_a_certificate_without_its_key_gets_nowhere(house: House) -> None:
+    with pytest.raises(zenoh.ZError, match="Unable to connect"):
+        stranger(house.endpoint, house.keys, "robot-2", key=house.keys / "robot-1")
+    house.still_works()
+
+
+def test_a_robot_that_comes_as_another_one_is_turned_out(house: House) -> None:
+    """Its session has the id of robot-2, its certificate says robot-1; then robot-2 itself comes."""
+    with contextlib.closing(
+        stranger(house.endpoint, house.keys, "robot-1", session_id("robot-2"))
+    ) as thief:
+        ear = thief.declare_subscriber("m/to/robot-2/**", zenoh.handlers.FifoChannel(10))
+        assert _is_turned_out(thief)
+        house.world.publisher("to/robot-2/order")(b"secret")
+        assert ear.try_recv() is None
+        thief.put("m/from/robot-2/out", b"forged")
+    with house.client("robot-2") as robot:
+        robot.publisher("from/robot-2/word")(b"it is me")
+        assert _heard(house.world) == [("robot-2/word", b"it is me")]
+    house.still_works()
+
+
+def test_a_second_session_of_a_name_gets_no_place(house: House) -> None:
+    with pytest.raises(MissionError, match="no bus at"):
+        house.client("robot-1", timeout_ms=1000)
+    with contextlib.closing(stranger(house.endpoint, house.keys, "robot-1", "1abc")) as second:
+        ear = second.declare_subscriber("m/to/robot-1/**", zenoh.handlers.FifoChannel(10))
+        second.put("m/from/robot-1/out", b"forged")
+        assert _is_turned_out(second)
+        assert ear.try_recv() is None
+    house.still_works()
+
+
+def test_who_listens_to_everything_hears_nothing(house: House) -> None:
+    with contextlib.closing(stranger(house.endpoint, house.keys, "robot-2")) as spy:
+        keys = ("**", "m/**", "m/to/**", "m/from/robot-1/**", "@/**")
+        ears = [spy.declare_subscriber(key, zenoh.handlers.FifoChannel(100)) for key in keys]
+        tokens = spy.liveliness().declare_subscriber("**", zenoh.handlers.FifoChannel(10), history=True)
+        time.sleep(0.3)
+        house.still_works()
+        assert [ear.try_recv() for ear in (*ears, tokens)] == [None] * (len(ears) + 1)
+
+
+def test_old_messages_that_somebody_else_says_again_are_not_heard(house: House) -> None:
+    with contextlib.closing(stranger(house.endpoint, house.keys, "injector")) as replaying:
+        for key in ("from/robot-1/out", "from/radio/carried", "from/operator/control", "to/robot-1/end"):
+            for _ in range(10):
+                replaying.put(f"m/{key}", b"what was said before")
+        house.still_works()
+
+
+def test_a_flood_on_a_denied_key_holds_nobody_up(house: House) -> None:
+    """A second of it at full speed, through the router's one thread."""
+    with contextlib.closing(stranger(house.endpoint, house.keys, "robot-2")) as flooding:
+        denied = flooding.declare_publisher("m/to/robot-1/percept")
+        started = time.monotonic()
+        while time.monotonic() - started < 1.0:
+            denied.put(bytes(1000))
+            flooding.put("m/from/robot-1/out", bytes(40_000))
+        house.still_works()
+
+
+def test_messages_of_100_mb_are_dropped_and_hold_nobody_up(house: House) -> None:
+    """Allowed keys and denied ones; on a link without low latency, which would not carry them at all."""
+    with house.client("injector") as injector:
+        for key in ("from/injector/fault", "from/robot-1/out"):
+            injector.publisher(key)(bytes(100_000_000))
+        house.still_works()
+
+
+def test_who_is_shut_out_is_turned_out_and_comes_back_when_it_is_let_in(house: House) -> None:
+    house.world.watch("robot-1")
+    house.robot.announce("robot-1")
+    assert house.world.receive_by(time.monotonic() + SOON_S) == ("world/alive/robot-1", b"alive")
+    house.world.shut_out("robot-1")
+    assert house.world.receive_by(time.monotonic() + SOON_S) == ("world/alive/robot-1", GONE)
+    house.world.let_in("robot-1")
+    assert _heard(house.world)[-1] == ("world/alive/robot-1", b"alive")
+
+
+def test_silent_connections_keep_nobody_out(house: House) -> None:
+    host, port = house.endpoint.removeprefix("tls/").split(":")
+    with ExitStack() as stack:
+        for _ in range(100):
+            stack.enter_context(socket.create_connection((host, int(port)), timeout=SOON_S))
+        with house.client("robot-2", timeout_ms=10_000):
+            house.still_works()
