@@ -77,7 +77,8 @@ def run(
 
             places = (("--map", map_file), ("--start", start), ("--goal", goal))
             words = words_of(scenario, settings, bundle.scenario.seed, places)
-            shown = page.enter_context(live_page(live, browser, folder, words))
+            is_paced = not bundle.scenario.clock.is_realtime
+            shown = page.enter_context(live_page(live, browser, folder, words, is_paced))
         with Display(bundle.scenario) as display:
             if driver == "inline":
                 from onehop.commands.inline_run import run_inline

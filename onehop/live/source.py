@@ -24,7 +24,7 @@ from onehop.wire.log_reader import forged
 from onehop.wire.logged import decoded
 from onehop.wire.selection import Selected, one_of
 
-LOOK_S = 1.0 / 30.0
+LOOK_S = 1.0 / 25.0
 """How often a log that is written is looked at [s]."""
 
 TICKS_AT_ONCE = 200
@@ -113,7 +113,7 @@ class Source:
         log, story = self.log, self.story
         if log is None or story is None or not 0 <= tick <= story.last_tick:
             return None
-        moment = Moment(log, tick, since, robot if robot in log.robots else 0)
+        moment = Moment(log, story, tick, since, robot if robot in log.robots else 0)
         if moment.truth is None:
             return None
         shown = frame(moment, story)

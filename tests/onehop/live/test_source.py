@@ -134,6 +134,10 @@ def test_lost_messages_are_those_since_the_frame_before_but_none_of_long_ago(par
         assert len(shown["lost"]) == len([one for one in lost if first < one <= tick])
         assert shown["cuts"] == [[[4], [1, 2, 3], False]]
     assert all(4 in one[:2] for one in shown["lost"])
+    for tick in {one for one in lost if 40 <= one <= 90}:
+        after = parted.frame(tick + 1, tick, 0)
+        assert after is not None
+        assert len(after["lost"]) == lost.count(tick + 1)
 
 
 def test_a_torn_log_says_so_and_shows_what_there_is(
