@@ -22,7 +22,7 @@ from onehop.contracts.scenario import Scenario
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import WallMap
 from onehop.plugins import plugged_radio
-from onehop.programs.find import check, search_in
+from onehop.programs.find import check, outsiders, search_in
 from onehop.programs.host import Host, ProgramError
 from onehop.scenario.link_trace import link_trace
 from onehop.wire.audit import Audit
@@ -55,7 +55,7 @@ class Divergence:
 class Report:
     """What a re-execution found. flaws: why the log is not all that was said (audit.py).
 
-    foreign: robots that were processes of somebody else's making: what they said is taken as it is.
+    foreign: robots of somebody else's making, or driven from outside: what they said is taken as it is.
     """
 
     ticks: int = 0
@@ -99,7 +99,7 @@ def replay(
     """
     original = log.bundle.scenario
     search_in(log.bundle.folder)
-    wanted, foreign = original.team.robots if robots is None else robots, original.commands
+    wanted, foreign = original.team.robots if robots is None else robots, outsiders(original)
     chosen = tuple(robot for robot in wanted if robot not in foreign)
     check(scenario or original, str(log.path), chosen)
     players: dict[str, Player] = {
@@ -109,7 +109,7 @@ def replay(
         walls = load_map(original.map, log.bundle.files)
         players[topics.RADIO_RECORD] = _radio(original, walls, link_trace(log.bundle, str(log.path)))
         players[topics.TRUTH] = _WorldPlayer(original, walls).play
-    report = Report(robots=chosen, foreign=tuple(sorted(foreign)))
+    report = Report(robots=chosen, foreign=foreign)
     audit = Audit(log)
     comparison = _Comparison(report, players, everything=parts and robots is None, torn=log.torn)
     try:
