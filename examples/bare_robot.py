@@ -164,7 +164,8 @@ class Bus:
                 if not (will_be_stopped and self._world_comes_back()):
                     sys.exit(3)
             elif what != "world is there":
-                will_be_stopped = what in ("stop", "wake") or (will_be_stopped and what != "percept")
+                is_asked = what in ("percept", "observation")
+                will_be_stopped = what in ("stop", "wake") or (will_be_stopped and not is_asked)
                 yield what, data
 
     def _world_comes_back(self) -> bool:
@@ -177,6 +178,9 @@ class Bus:
             except queue.Empty:
                 break
         return False
+
+    def has_more(self) -> bool:
+        return not self._queue.empty()
 
     def close(self) -> None:
         self._session.close()
@@ -197,6 +201,17 @@ def decoded(data: bytes) -> Any:
     return message
 
 
+def acted(
+    number: int, robot: Simple, seen: dict[str, Any], heard: list[dict[str, Any]]
+) -> dict[str, Any]:
+    """A step in real time, and what went into it."""
+    receptions = [one["reception"] for one in heard if one.get("reception") is not None]
+    action = robot.step(seen, {"receptions": receptions})
+    numbers = [one["number"] for one in heard]
+    packed = msgpack.packb(action)
+    return {"v": WIRE_VERSION, "number": number, "heard": numbers, "action": packed}
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--mission", required=True)
@@ -209,18 +224,28 @@ def main() -> int:
     bus = Bus(options.mission, f"robot-{options.id}", options.connect, password)
     robot = Simple(bus.briefing())
     bus.announce()
+    heard: list[dict[str, Any]] = []
+    newest: bytes | None = None
+    steps = 0
     for what, data in bus.messages():
-        if what == "percept":
-            _, ((_, observation), (_, inbox)) = msgpack.unpackb(data)
-            try:
-                action = robot.step(decoded(observation), decoded(inbox))
-            except Exception as error:
-                traceback.print_exc()
-                bus.say("failed", f"{type(error).__name__}: {error}".encode())
-                bus.close()
-                return 4
-            bus.say("out", msgpack.packb(action))
-        elif what in ("stop", "wake"):
+        try:
+            if what == "percept":
+                _, ((_, observation), (_, inbox)) = msgpack.unpackb(data)
+                bus.say("out", msgpack.packb(robot.step(decoded(observation), decoded(inbox))))
+            elif what == "heard":
+                heard.append(decoded(data))
+            elif what == "observation":
+                newest = data
+            if newest is not None and not bus.has_more():
+                steps += 1
+                bus.say("acted", msgpack.packb(acted(steps, robot, decoded(newest), heard)))
+                newest, heard = None, []
+        except Exception as error:
+            traceback.print_exc()
+            bus.say("failed", f"{type(error).__name__}: {error}".encode())
+            bus.close()
+            return 4
+        if what in ("stop", "wake"):
             bus.say("awake", b"")
         elif what == "kill":
             os.kill(os.getpid(), signal.SIGKILL)

@@ -116,7 +116,8 @@ class _Recorder:
                 self._close(None)
             return startup.WORLD_IS_GONE
         log = None if self._path is None else str(self._path)
-        summary = summarize(self._end.outcome, self._end.wall_s, self._journal.digest(), log)
+        end, digest = self._end, self._journal.digest()
+        summary = summarize(end.outcome, end.wall_s, digest, log, punctuality=end.punctuality)
         with self._writing():
             self._close(summary)
         self._put_digest(self._journal.digest().encode())

@@ -1,4 +1,7 @@
-"""The shell of the radio: receive the truth of a tick, carry its messages, put all inboxes."""
+"""The shell of the radio: receive the truth of a tick, carry its messages, put all inboxes.
+
+realtime.py has the one of a mission in real time.
+"""
 
 from onehop.contracts import topics
 from onehop.contracts.briefings import RadioBriefing
@@ -11,6 +14,7 @@ from onehop.wire.batch import pack_tick
 from onehop.wire.codec import decode, encode
 from onehop.wire.journal import WireMessage
 from radio_proxy.core.bounds import Carrier, make_radio
+from radio_proxy.realtime import RealTimeRadio
 
 
 def main() -> int:
@@ -22,8 +26,14 @@ def main() -> int:
     search_in(options.programs)
     with startup.connect(options, topics.RADIO) as bus:
         bus.watch(topics.WORLD)
-        radio = make_radio(plugged_radio(decode(RadioBriefing, startup.briefing(bus, topics.RADIO))))
+        briefing = decode(RadioBriefing, startup.briefing(bus, topics.RADIO))
+        radio = make_radio(plugged_radio(briefing))
         startup.calm_garbage_collector()
+        if briefing.speed:
+            startup.be_on_time()
+            realtime = RealTimeRadio(bus, radio, briefing.robots, briefing.speed)
+            bus.announce(topics.RADIO)
+            return realtime.serve()
         return _serve(bus, radio)
 
 

@@ -1,6 +1,8 @@
 """The shell of one robot: hear its observation and inbox of a tick, step its program, put the action.
 
-Which program that is says its briefing. One that fails says so to the world, and on stderr in full.
+In lock-step both come as one message, the percept of a tick; in real time each by itself, when it is
+there (latest_data.py). A robot knows by what it is sent in which of them it takes part. Which program
+that is says its briefing. One that fails says so to the world, and on stderr in full.
 """
 
 import os
@@ -17,6 +19,7 @@ from onehop.programs.find import search_in
 from onehop.programs.host import Host, ProgramError
 from onehop.wire.batch import unpack_tick
 from onehop.wire.codec import decode
+from robot_agent.latest_data import LatestData
 from robot_agent.watchdog import Watchdog
 
 
@@ -53,21 +56,35 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int:
         return startup.PROGRAM_FAILED
 
     watchdog = Watchdog(silence_s, lambda failure: os._exit(fail(failure)))
+    latest = LatestData(host, bus.publisher(topics.by(name, topics.ACTED)))
     bus.announce(name)
     will_be_stopped = False
     while True:
-        what, data = bus.receive()
+        received = bus.poll() if latest.can_step else bus.receive()
+        if received is None:
+            try:
+                with watchdog.watching():
+                    latest.step()
+            except ProgramError as failure:
+                return fail(failure)
+            will_be_stopped = False
+            continue
+        what, data = received
         if what == topics.PERCEPT:
             _, ((_, seen), (_, heard)) = unpack_tick(data)
             now = percept(decode(Observation, seen), decode(Inbox, heard))
-            watchdog.steps += 1
             try:
-                put(host.step(now))
+                with watchdog.watching():
+                    put(host.step(now))
             except ProgramError as failure:
                 return fail(failure)
-            finally:
-                watchdog.steps += 1
             will_be_stopped = False
+        elif what == topics.OBSERVATION:
+            if not latest.is_used:
+                startup.be_on_time(is_ours=False)
+            latest.on_observation(data)
+        elif what == topics.HEARD:
+            latest.on_heard(data)
         elif what in (topics.STOP, topics.WAKE):
             will_be_stopped = True
             put_awake(b"")

@@ -39,6 +39,14 @@ class LockStep:
             outcome = self._tick()
         return outcome
 
+    def broken_off(self, reason: str) -> Outcome:
+        """The account of a mission that is broken off now."""
+        return self.world.aborted(reason)
+
+    @property
+    def punctuality(self) -> None:
+        """There is no schedule."""
+
     def _tick(self) -> Outcome | None:
         world = self.world
         truth = world.truth()

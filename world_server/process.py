@@ -16,16 +16,9 @@ from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import encode
 from world_server.briefings import Briefings
+from world_server.clocks import Parts, lock_step, real_time
 from world_server.core.world import World
-from world_server.fault_orders import FaultOrders
-from world_server.lockstep import LockStep
 from world_server.mailbox import Mailbox, MissionBrokenError
-from world_server.pace import PaceKeeper
-from world_server.process_faults import ProcessFaults
-from world_server.progress import ProgressReports
-from world_server.recording import Recording
-from world_server.remote_radio import RemoteRadio
-from world_server.remote_robots import RemoteRobots
 from world_server.roll_call import RollCall
 
 START_S = 30.0
@@ -76,23 +69,14 @@ def _host(
     bus: Bus, bundle: Bundle, world: World, walls: FloatArray, driver: str, start_s: float
 ) -> None:
     """Run the mission from the first process's arrival to the last one's farewell."""
-    robots, silence_s = bundle.scenario.team.robots, bundle.scenario.clock.silence_s
+    robots = bundle.scenario.team.robots
     mail = Mailbox(bus)
     roll = RollCall(mail, robots)
     briefings = Briefings(bundle, walls, driver, roll.incarnation)
     open_briefings = partial(bus.answering, topics.config("*"), briefings.answer)
-    recording = Recording(bus, mail, silence_s)
-    orders = FaultOrders(bus, mail, robots)
-    mission = LockStep(
-        world,
-        RemoteRadio(bus, mail, silence_s),
-        RemoteRobots(bus, mail, roll, robots, silence_s),
-        ProcessFaults(bus, mail, roll, robots, open_briefings, silence_s),
-        orders,
-        recording,
-        ProgressReports(bus),
-        PaceKeeper(mail, recording, orders),
-    )
+    make = real_time if bundle.scenario.clock.is_realtime else lock_step
+    mission = make(Parts(bus, mail, roll, world, bundle.scenario, open_briefings))
+    recording = mission.recording
     _heed_stops(bus, mail)
     mail.read(topics.RECORDER, topics.FAILED, lambda why: mail.break_off(why.decode(errors="replace")))
     bus.watch("*")
@@ -105,11 +89,11 @@ def _host(
         started = time.monotonic()
         outcome = mission.run()
     except MissionBrokenError as broken:
-        outcome = world.aborted(broken.reason)
+        outcome = mission.broken_off(broken.reason)
     wall_s = time.monotonic() - started
     recording.hand_over()
     mail.close_mission()
-    _tell_the_end(bus, roll, End(outcome, recording.last_tick, wall_s))
+    _tell_the_end(bus, roll, End(outcome, recording.last_tick, wall_s, mission.punctuality))
     mail.wait(lambda: roll.present.isdisjoint(roll.everyone), FAREWELL_S)
 
 

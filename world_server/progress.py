@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from onehop.contracts import topics
 from onehop.contracts.fault_section import fault_in_words
 from onehop.contracts.messages import Action, Truth
-from onehop.contracts.operation import Progress, RobotProgress
+from onehop.contracts.operation import Progress, Punctuality, RobotProgress
 from onehop.node.bus import Bus
 from onehop.wire.codec import encode
 
@@ -22,10 +22,12 @@ class ProgressReports:
         self._tell = bus.publisher(topics.to(topics.OPERATOR, topics.TOLD))
         self._next_s = 0.0
 
-    def report(self, truth: Truth, actions: Mapping[int, Action]) -> None:
+    def report(
+        self, truth: Truth, actions: Mapping[int, Action], punctuality: Punctuality | None = None
+    ) -> None:
         """Tell of the faults of a tick, and report it, if it is time.
 
-        actions: by robot, ids ascending.
+        actions: by robot, ids ascending. punctuality: in real time.
         """
         for fault in truth.faults:
             self._tell(f"{truth.time_ns / 1e9:g} s: {fault_in_words(fault)}".encode())
@@ -34,4 +36,4 @@ class ProgressReports:
             return
         self._next_s = now + PROGRESS_S
         lines = tuple(RobotProgress(i, action.twist.v, action.status) for i, action in actions.items())
-        self._put(encode(Progress(truth.tick, truth.time_ns, lines)))
+        self._put(encode(Progress(truth.tick, truth.time_ns, lines, punctuality)))

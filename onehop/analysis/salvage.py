@@ -45,20 +45,20 @@ class Salvage:
 
 def salvage(torn: Path, out: Path) -> Salvage:
     """Write a sound log to `out`. Raises LogError when `torn` is no log of ours at all."""
-    period_ns = LogFile(torn).bundle.scenario.clock.period_ns
-    found = survey(torn, period_ns)
+    clock = LogFile(torn).bundle.scenario.clock
+    found = survey(torn, clock.period_ns)
     with LogCopy(out, "salvaged") as copy, torn.open("rb") as stream:
         copy.take_apart(stream, found.apart)
         for schema in found.schemas:
             copy.take_schema(schema)
         for channel in found.channels.values():
             copy.take_channel(channel)
-        rescue = _Rescue(copy, found)
+        rescue = _Rescue(copy, found, clock.is_realtime)
         for piece in found.pieces:
             rescue.begin(piece.first_tick)
             for record in parsed(records_of(piece.stretch, stream)):
                 if isinstance(record, Message):
-                    rescue.take(tick_of(record, period_ns), record)
+                    rescue.take(tick_of(record, clock.period_ns), record)
         rescue.end()
         copy.finish()
     saved = LogFile(out)
@@ -93,7 +93,8 @@ class _Tick:
 class _Rescue:
     """Collects messages tick by tick, and copies those of whole ticks."""
 
-    def __init__(self, copy: LogCopy, found: Survey) -> None:
+    def __init__(self, copy: LogCopy, found: Survey, in_real_time: bool) -> None:
+        self._is_whole = _is_whole_in_real_time if in_real_time else _is_whole
         self._copy = copy
         self._is_sound = found.ended and not found.losses
         self._ended = found.ended
@@ -128,7 +129,9 @@ class _Rescue:
         """Copy a tick, or give it up. Those after it are still there."""
         one = self._pending.pop(tick)
         is_last = not self._pending and self._ended
-        if one.wire and not (self._is_sound or _is_whole(one, self._pending.get(tick + 1), is_last)):
+        if one.wire and not (
+            self._is_sound or self._is_whole(one, self._pending.get(tick + 1), is_last)
+        ):
             self.given_up += len(one.messages)
             return
         if one.wire and tick != self.last_tick + 1:
@@ -157,5 +160,18 @@ def _is_whole(one: _Tick, following: _Tick | None, is_last: bool) -> bool:
         topics.rx(robot) in one.wire
         and topics.obs(robot) in one.wire
         and (topics.out(robot) in one.wire or robot in gone or is_last)
+        for robot in present
+    )
+
+
+def _is_whole_in_real_time(one: _Tick, following: _Tick | None, is_last: bool) -> bool:
+    """The same where any robot may owe its action: only what follows tells that none is lost."""
+    truth = one.truth()
+    if truth is None or topics.RADIO_RECORD not in one.wire:
+        return False
+    present = [presence.robot for presence in running(truth)]
+    return (following is not None or is_last) and all(
+        topics.obs(robot) in one.wire
+        and (topics.rx(robot) in one.wire) == (topics.out(robot) in one.wire)
         for robot in present
     )

@@ -7,18 +7,21 @@ from onehop.checking.invariants import COMPLETE, DIGEST
 from onehop.checking.snapshot import Snapshot
 from onehop.contracts import topics
 from onehop.contracts.printable import printable
+from onehop.contracts.sections import ClockSection
 from onehop.wire.journal import Digest, WireMessage
 
 
 class Completeness:
     """Every tick has its truth and radio record; of each running robot observation, inbox and action.
 
-    One robot may lack an action: the one that was given up for it, which leaves with the next tick.
+    One robot may lack an action: the one that was given up for it, which leaves with the next tick. In
+    real time any robot may, and then it has no inbox either.
     """
 
-    def __init__(self, findings: Findings, period_ns: int) -> None:
+    def __init__(self, findings: Findings, clock: ClockSection) -> None:
         self._findings = findings
-        self._period_ns = period_ns
+        self._period_ns = clock.period_ns
+        self._in_real_time = clock.is_realtime
         self._expected = 0
         self._without_action: dict[int, Exhibit] = {}
 
@@ -42,18 +45,33 @@ class Completeness:
             self._judge_robot(now, presence.robot)
 
     def _judge_robot(self, now: Snapshot, robot: int) -> None:
-        mine = (
+        mine = [
             (topics.obs(robot), now.observations.get(robot)),
             (topics.rx(robot), now.inboxes.get(robot)),
-        )
+        ]
+        if self._in_real_time:
+            self._judge_answer(now, robot)
+            mine.pop()
         for key, value in mine:
             if value is None:
                 what = f"robot {robot} runs and has no message on {topics.wire(key)}"
                 self._report(now, (robot,), what, now.exhibit(key, "no message"))
             else:
                 self._judge_time(now, key, value.time_ns)
-        if robot not in now.actions:
+        if robot not in now.actions and not self._in_real_time:
             self._without_action[robot] = now.exhibit(topics.out(robot), "no message")
+
+    def _judge_answer(self, now: Snapshot, robot: int) -> None:
+        """An action and what its robot took in for it lie together, and are of one observation."""
+        action, inbox = now.actions.get(robot), now.inboxes.get(robot)
+        answered = None if action is None else action.tick
+        heard = None if inbox is None else inbox.tick
+        if answered != heard:
+            what = f"robot {robot} answers tick {answered} with an inbox of tick {heard}"
+            said = now.exhibit(topics.rx(robot), f"tick {heard}")
+            self._report(now, (robot,), what, now.exhibit(topics.out(robot), f"tick {answered}"), said)
+        elif inbox is not None and inbox.time_ns != inbox.tick * self._period_ns:
+            self._report_time(now, topics.rx(robot), inbox.time_ns)
 
     def _judge_departures(self, now: Snapshot) -> None:
         """Whoever gave no action in the last tick has left in this one."""
@@ -68,15 +86,18 @@ class Completeness:
 
     def _judge_time(self, now: Snapshot, key: str, time_ns: int) -> None:
         if time_ns != now.tick * self._period_ns:
-            what = f"{topics.wire(key)} says that it is {time_ns / 1e9:g} s"
-            self._report(now, _robots_of(key), what, now.exhibit(key, f"time_ns {time_ns}"))
+            self._report_time(now, key, time_ns)
+
+    def _report_time(self, now: Snapshot, key: str, time_ns: int) -> None:
+        what = f"{topics.wire(key)} says that it is {time_ns / 1e9:g} s"
+        self._report(now, _robots_of(key), what, now.exhibit(key, f"time_ns {time_ns}"))
 
     def _miss(self, first: int, last: int) -> None:
         which = f"tick {first} is" if first == last else f"ticks {first} to {last} are"
         self._findings.report(COMPLETE, first, (), f"{which} missing")
 
-    def _report(self, now: Snapshot, robots: tuple[int, ...], what: str, exhibit: Exhibit) -> None:
-        self._findings.report(COMPLETE, now.tick, robots, what, exhibit)
+    def _report(self, now: Snapshot, robots: tuple[int, ...], what: str, *exhibits: Exhibit) -> None:
+        self._findings.report(COMPLETE, now.tick, robots, what, *exhibits)
 
     def finish(self, summary: dict[str, Any] | None) -> None:
         """No tick follows. summary: the outcome of a finished log."""

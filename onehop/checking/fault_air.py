@@ -44,6 +44,8 @@ class FaultyAir:
         if truth is None:
             return
         start_ns = truth.time_ns - self._period_ns
+        if now.record is not None and now.record.intake is not None:
+            start_ns = now.record.intake.placed_ns
         self._cut_since = {
             pair: self._cut_since.get(pair, start_ns) for cut in truth.cuts for pair in _pairs(cut)
         }

@@ -79,3 +79,9 @@ WITH_ANOTHER_PROPAGATION: dict[str, str] = dict.fromkeys(
     "who hears whom is a plugin's word (radio.propagation), and not worked out anew",
 )
 """What is not asked where the checker cannot tell links."""
+
+IN_REAL_TIME: dict[str, str] = dict.fromkeys(
+    (ONE_LEADER, ONE_TEAM, RE_ELECTION),
+    "in real time a robot may miss ticks, and the bound counts on all of them",
+)
+"""What is not asked where nobody waits for a robot."""

@@ -12,6 +12,7 @@ from onehop.checking.invariants import (
     COMPLETE,
     EPOCHS,
     FAULT_BIT,
+    IN_REAL_TIME,
     INVARIANTS,
     MEDIAN,
     MOTION,
@@ -95,9 +96,10 @@ def judge(
     scenario, summary = log.bundle.scenario, log.summary
     wanted = frozenset(only) or frozenset(INVARIANTS)
     findings = Findings(wanted, kept)
-    period_ns = scenario.clock.period_ns
+    in_real_time = scenario.clock.is_realtime
+    asked = wanted.difference(IN_REAL_TIME) if in_real_time else wanted
     trace = link_trace(log.bundle, "the log's scenario")
-    completeness = Completeness(findings, period_ns)
+    completeness = Completeness(findings, scenario.clock)
     digest = DigestCheck(findings)
     collisions = Collisions(findings, scenario)
     checks: list[Watcher] = [
@@ -107,13 +109,13 @@ def judge(
             ((OWN_VOICE, SILENCE), Voices(findings, scenario)),
             ((MEDIAN, SHAPE, EPOCHS), Team(findings, scenario.team)),
             ((ONE_LEADER, ONE_TEAM, RE_ELECTION), Leadership(findings, scenario, trace)),
-            ((RADIO_INTEGRITY,), RadioIntegrity(findings, scenario.radio, period_ns)),
+            ((RADIO_INTEGRITY,), RadioIntegrity(findings, scenario.radio, scenario.clock)),
             ((FAULT_BIT,), FaultBit(findings, scenario)),
             ((FAULT_BIT,), FaultyAir(findings, scenario, trace)),
             ((NO_COLLISION,), collisions),
             ((MOTION,), Motion(findings, scenario)),
         )
-        if wanted.intersection(names)
+        if asked.intersection(names)
     ]
     checks += watchers
     reading = _Reading(log)
@@ -131,6 +133,8 @@ def judge(
     reasons = {**UNEXERCISED, **(NOT_IN_THESIS if scenario.team.profile == "thesis" else {})}
     if not is_known(scenario.radio):
         reasons |= WITH_ANOTHER_PROPAGATION
+    if in_real_time:
+        reasons |= IN_REAL_TIME
     if reading.count and not reading.has_team:
         reasons |= WITHOUT_TEAM
     return _report(findings, reasons, reading.count)
@@ -145,7 +149,9 @@ class _Reading:
 
     def __init__(self, log: Log) -> None:
         self._log = log
-        self._team = frozenset(log.bundle.scenario.team.robots)
+        scenario = log.bundle.scenario
+        self._team = frozenset(scenario.team.robots)
+        self._in_lock_step = not scenario.clock.is_realtime
         self.count = 0
         self.error: str | None = None
         self.has_team = False
@@ -159,7 +165,7 @@ class _Reading:
                     self.count += 1
                     yield last
                 follows = last is not None and logged.tick == last[0].tick + 1
-                last = snapshot(logged, follows, self._team), logged.messages
+                last = snapshot(logged, follows, self._team, self._in_lock_step), logged.messages
                 self.has_team |= any(one.status is not None for one in last[0].actions.values())
         except LogError as error:
             self.error = error.problem

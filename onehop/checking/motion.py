@@ -31,7 +31,7 @@ class Motion:
         self._findings = findings
         self._period = scenario.clock.period_ns / 1e9
         self._bodies = dict(zip(scenario.team.robots, scenario.bodies, strict=True))
-        self._effects = Effects()
+        self._effects = Effects(scenario.clock)
         self._poses: dict[int, Pose] = {}
         self._driven: dict[int, tuple[float, float]] = {}
 

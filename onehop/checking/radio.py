@@ -21,6 +21,7 @@ from onehop.contracts.messages import (
     Verdict,
 )
 from onehop.contracts.radio_section import RadioSection
+from onehop.contracts.sections import ClockSection
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,10 +102,12 @@ class _Awaited:
 class RadioIntegrity:
     """Follows every message from the truth that offers it to the inbox that gets it."""
 
-    def __init__(self, findings: Findings, radio: RadioSection, period_ns: int) -> None:
+    def __init__(self, findings: Findings, radio: RadioSection, clock: ClockSection) -> None:
         self._findings = findings
         self._airtimes = Airtimes(radio)
-        self._period_ns = period_ns
+        self._period_ns = clock.period_ns
+        self._in_real_time = clock.is_realtime
+        self._handed: frozenset[int] = frozenset()
         self._known_ns: int | None = None
         self._sources: dict[int, _Source] = {}
         self._awaited: dict[int, list[_Awaited]] = {}
@@ -118,7 +121,10 @@ class RadioIntegrity:
             return
         for departure in now.truth.departures:
             self._awaited.pop(departure.robot, None)
-        self._take_requests(now.truth)
+        if self._in_real_time:
+            self._take_offers(now, now.truth, now.record)
+        else:
+            self._take_requests(now.truth)
         self._judge_verdicts(now, now.record)
 
     def _lose_count(self, known_ns: int) -> None:
@@ -138,10 +144,30 @@ class RadioIntegrity:
         for request in truth.transmit_requests:
             if not request.outbox:
                 continue
-            source = self._source(request.robot)
-            for sent in request.outbox:
-                source.unsettled[source.count] = _Sent(sent, offered_ns, truth.tick)
-                source.count += 1
+            self._offer(request.robot, request.outbox, offered_ns, truth.tick)
+
+    def _take_offers(self, now: Snapshot, truth: Truth, record: RadioRecord) -> None:
+        """In real time: what the truth brings and was not handed over before, and what was at once."""
+        intake = record.intake
+        if intake is None:
+            what = "the record does not tell when its truth came"
+            said = now.exhibit(topics.RADIO_RECORD, "no intake")
+            self._findings.report(RADIO_INTEGRITY, now.tick, (), what, said)
+            return
+        for request in truth.transmit_requests:
+            if request.robot not in self._handed:
+                self._offer(request.robot, request.outbox, intake.placed_ns, truth.tick)
+        for one in intake.handed:
+            action = now.actions.get(one.robot)
+            if action is not None:
+                self._offer(one.robot, action.outbox, one.at_ns, truth.tick)
+        self._handed = frozenset(one.robot for one in intake.handed)
+
+    def _offer(self, robot: int, outbox: tuple[Transmission, ...], offered_ns: int, tick: int) -> None:
+        source = self._source(robot)
+        for sent in outbox:
+            source.unsettled[source.count] = _Sent(sent, offered_ns, tick)
+            source.count += 1
 
     def _judge_verdicts(self, now: Snapshot, record: RadioRecord) -> None:
         settled: dict[tuple[int, int], set[int]] = {}
@@ -209,12 +235,19 @@ class RadioIntegrity:
         took_ns = verdict.arrival_ns - max(verdict.service_start_ns, verdict.offered_ns)
         if took_ns < least_ns:
             return f"arrived after {took_ns / 1e6:g} ms; its airtime alone is {least_ns / 1e6:g} ms"
-        end_ns = now.tick * self._period_ns
-        if not end_ns - self._period_ns <= verdict.arrival_ns <= end_ns:
+        begin_ns, end_ns = self._span(now)
+        if not begin_ns <= verdict.arrival_ns <= end_ns:
             return f"arrived at {verdict.arrival_ns} ns, which is not in this tick"
         if verdict.status is DeliveryStatus.CORRUPTED and not _is_corrupted(now, verdict.receiver):
             return "is altered, and no corruption is in force"
         return None
+
+    def _span(self, now: Snapshot) -> tuple[int, int]:
+        """From when to when the record of a tick goes [ns]."""
+        if now.record is not None and now.record.intake is not None and self._in_real_time:
+            return now.record.intake.placed_ns, now.record.intake.until_ns
+        end_ns = now.tick * self._period_ns
+        return end_ns - self._period_ns, end_ns
 
     def _judge_receptions(self, now: Snapshot) -> None:
         """Inboxes hold what arrived: each once, as it was sent, and nothing else."""
@@ -231,8 +264,14 @@ class RadioIntegrity:
                 if wrong is not None:
                     what = f"a message of robot {reception.source} to robot {robot} {wrong}"
                     self._report_reception(now, robot, reception, what)
+            if self._in_real_time:  # what is left it reads later; what came before it has passed over
+                last_ns = max((one.arrival_ns for one in inbox.receptions), default=0)
+                self._awaited[robot] = [one for one in awaited if one.verdict.arrival_ns >= last_ns]
+                continue
             for one in awaited:
                 self._report(now, one.verdict, "arrived and is not in the inbox")
+        if self._in_real_time:
+            return
         # who is stopped reads it later, and who is gone never
         self._awaited = {i: self._awaited[i] for i in now.stopped if i in self._awaited}
 

@@ -57,7 +57,7 @@ class Snapshot:
             self.inboxes[robot] = value
         elif isinstance(value, RadioRecord):
             self.record = value
-        else:
+        elif isinstance(value, Truth):
             self.truth = value
             self.present = {one.robot: one for one in value.present}
             self.stopped = value.stopped
@@ -91,8 +91,10 @@ class Snapshot:
         return self.truth is not None and self.record is not None and owed <= said
 
 
-def snapshot(logged: LoggedTick, follows: bool, team: frozenset[int]) -> Snapshot:
-    """A tick with its messages decoded. team: ids of all robots."""
+def snapshot(
+    logged: LoggedTick, follows: bool, team: frozenset[int], in_lock_step: bool = True
+) -> Snapshot:
+    """A tick with its messages decoded. team: ids of all robots. in_lock_step: none can be late."""
     made = Snapshot(logged.tick, follows)
     seen: set[str] = set()
     for key, data in logged.messages:
@@ -101,7 +103,7 @@ def snapshot(logged: LoggedTick, follows: bool, team: frozenset[int]) -> Snapsho
             continue
         seen.add(key)
         try:
-            value = decoded(Selected(logged.tick, key, data))
+            value = decoded(Selected(logged.tick, key, data), in_lock_step)
         except DecodeError as error:
             made.flaws.append((key, f"cannot be read: {error}"))
             continue

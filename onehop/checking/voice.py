@@ -27,7 +27,7 @@ class Voices:
         self._findings = findings
         self._robots = scenario.team.robots
         self._bodies = dict(zip(self._robots, scenario.bodies, strict=True))
-        self._effects = Effects()
+        self._effects = Effects(scenario.clock)
         self._before: dict[int, Effect] = {}
 
     def take(self, now: Snapshot) -> None:

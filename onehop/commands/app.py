@@ -34,6 +34,11 @@ class RosDistro(StrEnum):
     JAZZY = "jazzy"
 
 
+class Clock(StrEnum):
+    LOCKSTEP = "lockstep"
+    REALTIME = "realtime"
+
+
 class Preset(StrEnum):
     THESIS = "thesis"
     PHYSICAL = "physical"
@@ -74,6 +79,13 @@ def _help(context: typer.Context) -> None:
 def run(
     scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
     driver: Annotated[Driver, Option(help="One process each, or all in one.")] = Driver.PROCESSES,
+    clock: Annotated[
+        Clock | None, Option(help="Everyone waits for everyone in a tick, or nobody for anybody.")
+    ] = None,
+    speed: Annotated[
+        float | None,
+        Option(help="In real time: simulated seconds in one second.", callback=within(numbers.SPEED)),
+    ] = None,
     seed: Annotated[
         int | None, Option(help="Seed of everything random.", callback=within(numbers.SEED))
     ] = None,
@@ -133,6 +145,7 @@ def run(
     from onehop.commands import run as command
     from onehop.commands.ros2 import Ros2
 
+    settings = [*settings, *command.clock_settings(None if clock is None else clock.value, speed)]
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
     hosts = command.Hosts(bus, keys, remote, mission, wait_s)

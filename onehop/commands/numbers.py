@@ -12,6 +12,9 @@ ROBOT = Range(1, 2**31 - 1)
 MISSION_TIME = Range(0.0, 1e6)
 """Simulated time [s], as in a scenario."""
 
+SPEED = Range(0.01, 100.0)
+"""Simulated seconds in one of the wall clock."""
+
 CELL = Range(1e-3, 1e3)
 """Metres a cell of a MovingAI grid, as in a scenario."""
 

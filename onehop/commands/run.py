@@ -16,7 +16,7 @@ from onehop.programs.find import check, require_programs, search_in
 from onehop.scenario import scenario_file
 from onehop.scenario.bundle import Bundle
 from onehop.wire.output_folder import FIGURE, REMEDY, claimed, explained
-from onehop.wire.summary import summary_file, write_summary
+from onehop.wire.summary import punctuality_of, summary_file, write_summary
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +132,14 @@ def _require_what_is_shown(option: str, driver: str, record: bool) -> None:
         raise InputError(option, "it shows the log as it is written", "leave out --no-record")
 
 
+def clock_settings(clock: str | None, speed: float | None) -> list[str]:
+    """--clock and --speed as settings of the scenario. Raises InputError."""
+    if speed is not None and clock == "lockstep":
+        raise InputError("--speed", "lock-step is as fast as it can be", "--clock realtime with it")
+    settings = [] if clock is None else [f'clock.mode="{clock}"']
+    return settings if speed is None else [*settings, f"clock.speed={speed!r}"]
+
+
 def _fresh_folder(bundle: Bundle) -> Path:
     """runs/<scenario>-<seed>-<time>: a run never overwrites another. Raises InputError."""
     stem = f"{bundle.scenario.name}-{bundle.scenario.seed}-{time.strftime('%Y%m%d-%H%M%S')}"
@@ -201,6 +209,9 @@ def _print(summary: dict[str, Any], folder: Path) -> None:
         f"simulated   {summary['sim_s']:.1f} s in {summary['wall_s']:.1f} s: {summary['ticks']} ticks, "
         f"{summary['ticks_per_s']:.0f} a second, {summary['real_time_factor']:.1f}x real time"
     )
+    punctuality = punctuality_of(summary)
+    if punctuality is not None:
+        console.print(f"real time   {punctuality.in_words()}")
     console.print(f"collisions  {summary['collisions']}")
     if "energy" in summary:
         driving, cards = (

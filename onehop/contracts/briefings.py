@@ -59,7 +59,8 @@ class PluggedBriefing(Briefing, frozen=True):
 class RadioBriefing(Wire, frozen=True, omit_defaults=True):
     """All that the radio proxy is told before it starts.
 
-    walls: segments x0, y0, x1, y1 [m]. links: that were measured, if there are any.
+    walls: segments x0, y0, x1, y1 [m]. links: that were measured, if there are any. speed: simulated
+    seconds in one of the wall clock; 0 in lock-step.
     """
 
     seed: int
@@ -68,6 +69,7 @@ class RadioBriefing(Wire, frozen=True, omit_defaults=True):
     radio: RadioSection
     walls: tuple[tuple[float, float, float, float], ...]
     links: LinkTrace | None = None
+    speed: float = 0.0
 
     def plugin(self, group: str) -> Any:  # noqa: ARG002 - see PluggedRadioBriefing
         """What is plugged in under a group (plugin_names.py); None where a built-in one is named."""
@@ -148,4 +150,5 @@ def radio_briefing(
         radio=scenario.radio,
         walls=tuple((x0, y0, x1, y1) for x0, y0, x1, y1 in segments),
         links=links,
+        speed=scenario.clock.speed if scenario.clock.is_realtime else 0.0,
     )

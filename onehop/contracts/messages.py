@@ -67,12 +67,15 @@ class Inbox(Wire, frozen=True, omit_defaults=True):
     """What the radio delivered to one robot in the tick that ends at time_ns (key rx/<i>).
 
     neighbours: whom its card heard, by id; where there are none the key is left out on the wire.
+    In real time: what a robot took in for the action that lies beside it, which answers the observation
+    of `tick`. heard: numbers of the messages `Heard` that it is made of; left out in lock-step.
     """
 
     tick: int
     time_ns: int
     receptions: tuple[Reception, ...]
     neighbours: tuple[Neighbour, ...] = ()
+    heard: tuple[int, ...] = ()
 
 
 class Percept(Value, frozen=True):
@@ -294,17 +297,89 @@ class Verdict(Value, frozen=True):
     bit_error_rate: float
 
 
-class RadioRecord(Wire, frozen=True):
+class HandOver(Value, frozen=True):
+    """In real time: when the NIC of a robot took over what its action of a tick hands to it [ns]."""
+
+    robot: int
+    at_ns: int
+
+
+class Intake(Value, frozen=True):
+    """What came to the radio in one tick of real time, and at which simulated instants [ns].
+
+    placed_ns: from when on the truth of the tick held. handed: by robots, in order. until_ns: when the
+    next truth took its place, and up to which the record goes.
+    """
+
+    placed_ns: int
+    handed: tuple[HandOver, ...]
+    until_ns: int
+
+
+class RadioRecord(Wire, frozen=True, omit_defaults=True):
     """What happened on the air in the tick that ends at time_ns (key record).
 
     control_bytes: routing bytes sent since the start of the mission, by kind ("rreq", "rrep", "rerr",
         and "source_route" for what MRSR adds to data).
+    intake: in real time alone. The record then is of what follows the truth of its tick, not of what
+        came before it.
     """
 
     tick: int
     time_ns: int
     verdicts: tuple[Verdict, ...]
     control_bytes: dict[str, int]
+    intake: Intake | None = None
+
+
+class Heard(Wire, frozen=True, omit_defaults=True):
+    """In real time: the radio to a robot, when it is due (key heard).
+
+    number: of this message to this robot, from 1, through all its incarnations. One reception, or a
+    report of its card's neighbours.
+    """
+
+    number: int
+    reception: Reception | None = None
+    neighbours: tuple[Neighbour, ...] = ()
+
+
+class Acted(Wire, frozen=True):
+    """In real time: a robot's answer to an observation (key acted). action: an Action, as logged.
+
+    number: of this answer, from 1 in each incarnation: one that is missing has changed its state. heard:
+    numbers of what it has taken in from the radio since the last one.
+    """
+
+    number: int
+    heard: tuple[int, ...]
+    action: bytes
+
+
+class Placed(Wire, frozen=True):
+    """In real time: world to radio, a Truth. sent_ns: the world's simulated clock when it was sent [ns].
+
+    anchor: how often that clock has been set back, since the world was too late.
+    """
+
+    sent_ns: int
+    anchor: int
+    truth: Truth
+
+
+class Handed(Wire, frozen=True):
+    """In real time: world to radio, what a robot hands to its NIC, at once. sent_ns: as in Placed."""
+
+    sent_ns: int
+    request: TransmitRequest
+
+
+class Lateness(Wire, frozen=True):
+    """In real time: this tick began late (key late). late_ns: on the wall clock [ns]."""
+
+    tick: int
+    time_ns: int
+    late_ns: int
 
 
 class Carriage(Value, frozen=True):

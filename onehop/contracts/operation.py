@@ -6,15 +6,45 @@ from onehop.contracts.team import Status
 from onehop.contracts.values import Value, Wire
 
 
+class Punctuality(Value, frozen=True):
+    """How a mission of real time kept its schedule.
+
+    speed: simulated seconds in one of the wall clock. start_s: when tick 0 was due, or would have been
+    by the schedule as it is now (CLOCK_MONOTONIC of the world's host [s]). late_ticks: that began late
+    (schedule.py). latest_ms: how late any tick began at most. moved_ms: by how much the schedule was
+    moved in all. unanswered: ticks of robots that gave nothing for them. unrecorded_ticks: that the
+    recorder was too slow for.
+    """
+
+    speed: float
+    start_s: float
+    late_ticks: int
+    latest_ms: float
+    moved_ms: float
+    unanswered: int
+    unrecorded_ticks: int
+
+    def in_words(self) -> str:
+        """The same in one line, for people."""
+        words = f"{self.late_ticks} late ticks, {self.latest_ms:.1f} ms at most"
+        if self.moved_ms:
+            words += f", schedule moved by {self.moved_ms:.0f} ms"
+        if self.unrecorded_ticks:
+            words += f", {self.unrecorded_ticks} ticks not recorded"
+        return words
+
+
 class End(Wire, frozen=True):
     """World to all: the mission is over (key end). last_tick: the last one that is recorded.
 
-    wall_s: wall-clock time of the ticks; it is for people and stays out of the log.
+    wall_s: wall-clock time of the ticks; it is for people and stays out of the log. punctuality: in real
+    time.
     """
 
     outcome: Outcome
     last_tick: int
     wall_s: float
+    punctuality: Punctuality | None = None
 
 
 class Death(Wire, frozen=True):
@@ -68,8 +98,12 @@ class RobotProgress(Value, frozen=True):
 
 
 class Progress(Wire, frozen=True):
-    """World to operator, a few times a second (key progress): how far the mission is."""
+    """World to operator, a few times a second (key progress): how far the mission is.
+
+    punctuality: in real time.
+    """
 
     tick: int
     time_ns: int
     robots: tuple[RobotProgress, ...]
+    punctuality: Punctuality | None = None

@@ -271,16 +271,26 @@ def beside_goal(goal: GoalSection, body: RobotSection, planner: PlannerSection) 
 
 @dataclass(frozen=True, slots=True)
 class ClockSection:
-    """period_ms: length of a tick, in which everyone waits for its inputs and for nothing else.
+    """period_ms: length of a tick. mode: whether everyone waits in it for its inputs and for nothing
+    else ("lockstep"), or nobody for anybody ("realtime", docs/realtime.md).
 
     limit_s: simulated time after which a mission has failed.
     silence_s: wall-clock time after which a process that says nothing is given up [s].
+    speed: simulated seconds in one of the wall clock; in real time alone. hold_s: how long a robot that
+    says nothing goes on with its last command, simulated [s]; in real time alone.
     """
 
     period_ms: Annotated[int, Range(1, 1000)] = 50
     limit_s: Annotated[float, Range(0.001, 1e6)] = 900.0
     silence_s: Annotated[float, Range(0.1, 3600.0)] = 10.0
+    mode: Literal["lockstep", "realtime"] = "lockstep"
+    speed: Annotated[float, Range(0.01, 100.0)] = 1.0
+    hold_s: Annotated[float, Range(0.0, 60.0)] = 0.5
 
     @property
     def period_ns(self) -> int:
         return self.period_ms * 1_000_000
+
+    @property
+    def is_realtime(self) -> bool:
+        return self.mode == "realtime"

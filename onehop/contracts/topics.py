@@ -55,6 +55,21 @@ OUT = "out"
 PART = "part"
 """To or from a robot: the beginning of a message that is longer than its link carries."""
 
+OBSERVATION = "observation"
+"""World to robot, in real time: its observation of a tick."""
+
+HEARD = "heard"
+"""Radio to robot, in real time: a reception, when it is due."""
+
+ACTED = "acted"
+"""Robot to world, in real time: its action, and what it has heard for it."""
+
+PLACED = "placed"
+"""World to radio, in real time: ground truth of a tick."""
+
+HANDED = "handed"
+"""World to radio, in real time: what a robot hands to its NIC."""
+
 KILL = "kill"
 """World to robot: a kill by a fault, which the robot's process carries out on itself; world to operator:
 the same of a process that is stopped."""
@@ -132,6 +147,10 @@ TRUTH = "truth"
 
 RADIO_RECORD = "radio"
 """Log channel of the radio's verdicts; on the bus they travel in `carried`."""
+
+
+LATE = "late"
+"""Log channel of ticks of real time that began late."""
 
 
 @_remembered

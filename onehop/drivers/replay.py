@@ -6,34 +6,35 @@ hidden, every output is the same, byte for byte. State grows from the start of t
 re-execution ends where a tick is missing.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
 import msgpack
 
 from onehop.contracts import topics
-from onehop.contracts.action_limits import ActionLimits
-from onehop.contracts.briefings import radio_briefing, robot_briefing
+from onehop.contracts.briefings import radio_briefing
 from onehop.contracts.errors import DecodeError, OnehopError
-from onehop.contracts.link_trace import LinkTrace
-from onehop.contracts.messages import Action, Inbox, Observation, Truth, percept
+from onehop.contracts.messages import Truth
 from onehop.contracts.scenario import Scenario
+from onehop.drivers.players import (
+    Player,
+    RadioPlayer,
+    RealTimeRadioPlayer,
+    RobotPlayer,
+    WorldPlayer,
+    value_in,
+)
 from onehop.maps.map_file import load_map
-from onehop.maps.walls import WallMap
 from onehop.plugins import plugged_radio
 from onehop.programs.find import check, outsiders, search_in
-from onehop.programs.host import Host, ProgramError
 from onehop.scenario.link_trace import link_trace
 from onehop.wire.audit import Audit
-from onehop.wire.codec import UNPACK_REFUSALS, decode, encode
+from onehop.wire.codec import UNPACK_REFUSALS
 from onehop.wire.difference import first_difference
 from onehop.wire.journal import canonical_rank
 from onehop.wire.log_reader import LogFile, LoggedTick, forged
-from onehop.wire.logged import M, value_of
-from onehop.wire.selection import Selected
 from radio_proxy.core.bounds import make_radio
-from world_server.core.world import World
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,10 +80,6 @@ class Report:
             self.first = divergence
 
 
-Player = Callable[[LoggedTick], Iterator[tuple[str, bytes]]]
-"""Takes the recorded messages of a tick, gives (bus key, bytes) of what a component says to them."""
-
-
 def replay(
     log: LogFile,
     robots: tuple[int, ...] | None = None,
@@ -103,17 +100,24 @@ def replay(
     chosen = tuple(robot for robot in wanted if robot not in foreign)
     check(scenario or original, str(log.path), chosen)
     players: dict[str, Player] = {
-        topics.out(i): _RobotPlayer(scenario or original, i).play for i in chosen
+        topics.out(i): RobotPlayer(scenario or original, i).play for i in chosen
     }
     if parts:
         walls = load_map(original.map, log.bundle.files)
-        players[topics.RADIO_RECORD] = _radio(original, walls, link_trace(log.bundle, str(log.path)))
-        players[topics.TRUTH] = _WorldPlayer(original, walls).play
+        links = link_trace(log.bundle, str(log.path))
+        radio = make_radio(plugged_radio(radio_briefing(original, walls.segments, links)))
+        in_real_time = original.clock.is_realtime
+        radio_player = RealTimeRadioPlayer(radio) if in_real_time else RadioPlayer(radio)
+        players[topics.RADIO_RECORD] = radio_player.play
+        players[topics.TRUTH] = WorldPlayer(original, walls).play
     report = Report(robots=chosen, foreign=foreign)
     audit = Audit(log)
     comparison = _Comparison(report, players, everything=parts and robots is None, torn=log.torn)
     try:
-        for number, tick in enumerate(audit.ticks()):
+        ticks = audit.ticks()
+        if log.torn and original.clock.is_realtime:
+            ticks = _all_but_last(ticks)
+        for number, tick in enumerate(ticks):
             comparison.judge_before(tick)
             if tick.tick != number or (last_tick is not None and tick.tick > last_tick):
                 break
@@ -127,6 +131,15 @@ def replay(
     return report
 
 
+def _all_but_last(ticks: Iterator[LoggedTick]) -> Iterator[LoggedTick]:
+    """The ticks of a torn log of real time: nothing tells whether all of the last one is there."""
+    before: LoggedTick | None = None
+    for tick in ticks:
+        if before is not None:
+            yield before
+        before = tick
+
+
 class _Comparison:
     """Lets the players speak to each tick, and compares what they say with what is recorded.
 
@@ -138,7 +151,7 @@ class _Comparison:
         self._report = report
         self._players = players
         self._everything = everything
-        self._foreign = {topics.out(robot) for robot in report.foreign}
+        self._unheard = {topics.LATE, *(topics.out(robot) for robot in report.foreign)}
         self._torn = torn
         self._unjudged: list[Divergence] = []
 
@@ -164,7 +177,7 @@ class _Comparison:
     ) -> Iterator[Divergence]:
         for key in sorted({*recorded, *said}, key=canonical_rank):
             if key not in said:
-                if key in self._players or (self._everything and key not in self._foreign):
+                if key in self._players or (self._everything and key not in self._unheard):
                     yield _only(tick, key, "present", None)
             elif key not in recorded:
                 yield _only(tick, key, None, "present")
@@ -180,7 +193,7 @@ class _Comparison:
         """
         if not self._unjudged:
             return
-        truth = _value(Truth, tick, topics.TRUTH)
+        truth = value_in(Truth, tick, topics.TRUTH)
         gone = set() if truth is None else {one.robot for one in truth.departures}
         for one in self._unjudged:
             if not (_is_missing(one) and one.channel.startswith(_OUT) and one.robot in gone):
@@ -218,84 +231,3 @@ def _divergence(tick: int, key: str, recorded: bytes, replayed: bytes) -> Diverg
     if found is None:
         found = ("encoding", recorded.hex()[:40], replayed.hex()[:40])
     return Divergence(tick, topics.wire(key), _robot(key), *found)
-
-
-def _value(kind: type[M], tick: LoggedTick, key: str) -> M | None:
-    """The value of a message of a tick, None when there is none. Raises DecodeError."""
-    data = tick.get(key)
-    return None if data is None else value_of(kind, Selected(tick.tick, key, data))
-
-
-class _RobotPlayer:
-    """One robot in every incarnation."""
-
-    def __init__(self, scenario: Scenario, robot: int) -> None:
-        self._scenario = scenario
-        self._id = robot
-        self._incarnation = -1
-        self._host: Host | None = None
-
-    def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
-        i = self._id
-        observation = _value(Observation, tick, topics.obs(i))
-        inbox = _value(Inbox, tick, topics.rx(i))
-        if observation is None or inbox is None:
-            return
-        if self._host is None or self._incarnation != observation.incarnation:
-            self._incarnation = observation.incarnation
-            self._host = Host(robot_briefing(self._scenario, i, self._incarnation))
-        try:
-            said = self._host.step(percept(observation, inbox))
-        except ProgramError:  # nothing more is heard of it, as in the mission
-            return
-        yield topics.out(i), said
-
-
-def _radio(scenario: Scenario, walls: WallMap, links: LinkTrace | None) -> Player:
-    radio = make_radio(plugged_radio(radio_briefing(scenario, walls.segments, links)))
-
-    def play(tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
-        truth = _value(Truth, tick, topics.TRUTH)
-        if truth is None:
-            return
-        carried = radio.carry(truth)
-        yield topics.RADIO_RECORD, encode(carried.record)
-        for i, inbox in carried.inboxes.items():
-            yield topics.rx(i), encode(inbox)
-
-    return play
-
-
-class _WorldPlayer:
-    """The world, with the deaths and faults that no script foresaw taken from the recorded truth."""
-
-    def __init__(self, scenario: Scenario, walls: WallMap) -> None:
-        self._world = World(scenario, walls)
-        self._limits = ActionLimits(scenario.team.robots)
-        self._actions: dict[int, Action] | None = None
-
-    def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
-        truth = _value(Truth, tick, topics.TRUTH)
-        if truth is None:
-            return
-        world = self._world
-        if self._actions is not None:
-            world.advance(self._actions, truth.faults)
-        present = {presence.robot for presence in truth.present}
-        for departure in truth.departures:
-            if departure.robot not in present:
-                world.fence(departure.robot, departure.why)
-        yield topics.TRUTH, encode(world.truth())
-        for i, observation in world.observe().items():
-            yield topics.obs(i), encode(observation)
-        actions: dict[int, Action] = {}
-        for key, action in tick.messages:
-            stem, _, robot = key.partition("/")
-            if stem == "out":
-                try:
-                    said = decode(Action, action)
-                except DecodeError:
-                    continue
-                if self._limits.breach(said, tick.tick, said.incarnation) is None:
-                    actions[int(robot)] = said
-        self._actions = actions

@@ -15,7 +15,6 @@ from onehop.contracts.geometry import to_map
 from onehop.contracts.messages import (
     Action,
     DeliveryStatus,
-    Inbox,
     Observation,
     Presence,
     RadioRecord,
@@ -27,7 +26,7 @@ from onehop.contracts.team import Status
 from onehop.live.now import now_in_words
 from onehop.live.story import Story
 from onehop.wire.log_reader import forged
-from onehop.wire.logged import decoded
+from onehop.wire.logged import TickMessage, decoded
 from onehop.wire.selection import one_of
 from robot_agent.core.team.formation import formation, shape_of
 
@@ -67,7 +66,7 @@ class Moment:
                     holder = one.path[-1] if one.path else one.source
                     self.lost.append((holder, one.receiver, one.status.value))
 
-    def _take(self, key: str, value: Truth | RadioRecord | Inbox | Observation | Action) -> None:
+    def _take(self, key: str, value: TickMessage) -> None:
         if isinstance(value, Truth):
             self.truth = value
         elif isinstance(value, Action):

@@ -157,7 +157,9 @@ class _Launch:
         if left is not None:
             return {**left, "processes": [process._asdict() for process in group.processes]}
         log = str(self._log) if _written_ns(self._log) != self._log_before else None
-        return summarize(ending.outcome, ending.wall_s, ending.digest, log, group.processes)
+        return summarize(
+            ending.outcome, ending.wall_s, ending.digest, log, group.processes, ending.punctuality
+        )
 
     def _run_once(self, group: ProcessGroup, placement: Placement) -> Ending | None:
         """One attempt; None when the port was taken in between."""

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.contracts.messages import Outcome
-from onehop.contracts.operation import Death, End, Progress
+from onehop.contracts.operation import Death, End, Progress, Punctuality
 from onehop.mission.processes import ProcessGroup
 from onehop.mission.stops import StopRequest
 from onehop.node.bus import ALIVE, Bus
@@ -45,11 +45,15 @@ CANNOT_RUN = 2
 
 
 class Ending(NamedTuple):
-    """How a mission ended. wall_s: time of its ticks. digest: None if the recorder did not finish."""
+    """How a mission ended. wall_s: time of its ticks. digest: None if the recorder did not finish.
+
+    punctuality: in real time.
+    """
 
     outcome: Outcome
     wall_s: float
     digest: str | None
+    punctuality: Punctuality | None = None
 
 
 def aborted(reason: str, ticks: int) -> Ending:
@@ -192,7 +196,8 @@ class OperatorSession:
 
     def _ending(self) -> Ending:
         if self._end is not None:
-            return Ending(self._end.outcome, self._end.wall_s, self._digest)
+            end = self._end
+            return Ending(end.outcome, end.wall_s, self._digest, end.punctuality)
         if self._group.exit_status(topics.WORLD):
             return ending_by_death(self._group, topics.WORLD, self._tick)
         return aborted(self._given_up(time.monotonic()) or LOST_WORD, self._tick)

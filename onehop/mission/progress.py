@@ -70,6 +70,8 @@ class Display:
                 f"leader {line.robot} ({status.shape.value}, {len(status.members)} robots, "
                 f"{status.error:.0f} m to go, {line.speed:.1f} m/s)"
             )
+        if progress.punctuality is not None:
+            words.append(progress.punctuality.in_words())
         return Text("  ".join(words))
 
     def _links(self, progress: Progress) -> Table:

@@ -6,7 +6,7 @@ depend on that order. Liveliness changes come through the same channel. The chan
 network thread fills it without Python's interpreter lock, and the process's one thread takes from it. A
 Python callback costs a thread switch or two more for each message.
 
-No thread outlives its session: the pulse and the threads of Python callbacks end before it is closed.
+No thread outlives its session: the alarm and the threads of Python callbacks end before it is closed.
 """
 
 import contextlib
@@ -26,6 +26,7 @@ import zenoh
 from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.node import peer_limits
+from onehop.node.alarm import Alarm
 from onehop.node.gate import Gate, limit_unread
 from onehop.node.identity import Certificate, Identity, proof, session_id
 from onehop.node.parts import PART_BYTES, Parts, last_part, leading_parts
@@ -38,9 +39,6 @@ GONE = b"gone"
 
 CHANNEL_MESSAGES = 100_000
 """Messages that may wait for a process. When there are more its peers wait too: nothing is dropped."""
-
-PULSE_S = 0.1
-"""How often a process that waits with a time limit looks at the clock."""
 
 CONNECT_TIMEOUT_MS = 300_000
 """How long a client waits for the router to appear: the first world of an installation compiles its
@@ -93,7 +91,7 @@ class Bus:
         self._kept: list[Any] = []
         self._called: list[Any] = []
         self._callback_ends: list[SimpleQueue[threading.Thread]] = []
-        self._pulse: threading.Thread | None = None
+        self._alarm: Alarm | None = None
         self._closed = threading.Event()
         if gate is not None:
             links = session.info.declare_link_events_listener(self._callback(gate.on_link))
@@ -114,8 +112,8 @@ class Bus:
     def _end_threads(self) -> None:
         """Wait for everything that may still use the session: on a closed one it would raise."""
         self._channel.undeclare()  # type: ignore[no-untyped-call]  # lets go who waits for room in it
-        if self._pulse is not None:
-            self._pulse.join()
+        if self._alarm is not None:
+            self._alarm.end()
         for declared in self._called:
             declared.undeclare()
         for end in self._callback_ends:
@@ -130,12 +128,16 @@ class Bus:
     def _key(self, key: str) -> str:
         return f"{self._mission}/{key}"
 
-    def publisher(self, key: str, express: bool = True) -> Callable[[bytes], None]:
-        """A function that puts bytes on a key. express: send at once rather than batch."""
+    def publisher(
+        self, key: str, express: bool = True, may_drop: bool = False
+    ) -> Callable[[bytes], None]:
+        """A function that puts bytes on a key. express: send at once rather than batch.
+
+        may_drop: what does not fit into a queue is dropped, and nobody waits until it does.
+        """
+        control = zenoh.CongestionControl.DROP if may_drop else zenoh.CongestionControl.BLOCK
         publisher = self._session.declare_publisher(
-            self._key(key),
-            congestion_control=zenoh.CongestionControl.BLOCK,
-            express=express,
+            self._key(key), congestion_control=control, express=express
         )
         self._kept.append(publisher)
         _, _, to_or_by = key.partition("/")
@@ -185,31 +187,39 @@ class Bus:
         """
         channel = self._channel
         while True:
-            sample = channel.try_recv() or channel.recv()
-            what = str(sample.key_expr)[self._prefix :]
-            data = sample.payload.to_bytes()
-            if not (self._parts.waiting or what.endswith(topics.PART)):
-                return what, data
-            whole = self._parts.joined(what, data)
-            if whole is not None:
-                return what, whole
+            received = self._whole(channel.try_recv() or channel.recv())
+            if received is not None:
+                return received
+
+    def _whole(self, sample: zenoh.Sample) -> tuple[str, bytes] | None:
+        """A message with the parts that came before it; None if it is a part itself."""
+        what = str(sample.key_expr)[self._prefix :]
+        data = sample.payload.to_bytes()
+        if not (self._parts.waiting or what.endswith(topics.PART)):
+            return what, data
+        whole = self._parts.joined(what, data)
+        return None if whole is None else (what, whole)
 
     def receive_by(self, deadline: float) -> tuple[str, bytes] | None:
         """The next message; None when there is none by the deadline (time.monotonic() [s])."""
-        if self._pulse is None:
-            self._pulse = threading.Thread(target=self._beat, name="pulse", daemon=True)
-            self._pulse.start()
+        if self._alarm is None:
+            self._alarm = Alarm(lambda: self.tell_self(topics.PULSE))
         pulse = (self._own + topics.PULSE)[self._prefix :]
         while True:
+            self._alarm.ring_by(deadline)
             what, data = self.receive()
             if what != pulse:
                 return what, data
             if time.monotonic() >= deadline:
                 return None
 
-    def _beat(self) -> None:
-        while not self._closed.wait(PULSE_S):
-            self.tell_self(topics.PULSE)
+    def poll(self) -> tuple[str, bytes] | None:
+        """The next message if it is there already."""
+        while (sample := self._channel.try_recv()) is not None:
+            received = self._whole(sample)
+            if received is not None:
+                return received
+        return None
 
     def shut_out(self, name: str) -> None:
         """End the session of a name, and do not take another one. It needs names that are known."""

@@ -35,6 +35,9 @@ def rights(name: str) -> Rights:
     if name == topics.RECORDER:
         puts.append(topics.to(topics.OPERATOR, topics.DIGEST))
         audience.append(topics.heard(topics.OPERATOR))
+    if name == topics.RADIO:
+        puts.append(topics.to(topics.robot_name("$*"), topics.HEARD))
+        audience.append(topics.heard(topics.robot_name("$*")))
     return Rights(
         puts=tuple(puts),
         hears=topics.heard(name),

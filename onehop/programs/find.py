@@ -94,7 +94,11 @@ def outsiders(scenario: Scenario) -> tuple[int, ...]:
 
 
 def require_programs(scenario: Scenario, origin: str) -> None:
-    """See that every robot can be run in this process. origin: see `check`. Raises ScenarioError."""
+    """See that a mission can be run in one process. origin: see `check`. Raises ScenarioError."""
+    if scenario.clock.is_realtime:
+        what = "one process has no real time: in it everyone waits for everyone"
+        remedy = "onehop run with --driver processes, or --set clock.mode='\"lockstep\"'"
+        raise ScenarioError(f"{origin}: clock.mode", what, remedy)
     for robot in outsiders(scenario):
         number = next((n for n, one in enumerate(scenario.robots) if one.id == robot), None)
         if robot in scenario.commands:

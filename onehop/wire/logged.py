@@ -4,11 +4,11 @@ from typing import TypeAlias, TypeVar
 
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.messages import Action, Inbox, Observation, RadioRecord, Truth
+from onehop.contracts.messages import Action, Inbox, Lateness, Observation, RadioRecord, Truth
 from onehop.wire.codec import decode
 from onehop.wire.selection import Selected
 
-TickMessage: TypeAlias = Truth | RadioRecord | Inbox | Observation | Action
+TickMessage: TypeAlias = Truth | RadioRecord | Inbox | Observation | Action | Lateness
 
 M = TypeVar("M", bound=TickMessage)
 
@@ -18,23 +18,31 @@ _KINDS: dict[str, type[TickMessage]] = {
     "rx": Inbox,
     "obs": Observation,
     "out": Action,
+    topics.LATE: Lateness,
 }
 
+_MAY_BE_LATE = Inbox, Action
+"""What in real time may belong to an earlier tick than the one in which it lies: its robot was late."""
 
-def decoded(message: Selected) -> TickMessage:
-    """The value of a message. Raises DecodeError if it is not one of its key and tick."""
+
+def decoded(message: Selected, in_lock_step: bool = False) -> TickMessage:
+    """The value of a message. Raises DecodeError if it is not one of its key and tick.
+
+    in_lock_step: nobody can be late.
+    """
     tick, key, data = message
     try:
         value = decode(_KINDS[key.partition("/")[0]], data)
     except DecodeError as error:
         raise DecodeError(f"tick {tick}, {topics.wire(key)}: {error}") from None
-    if value.tick != tick:
+    may_be_late = isinstance(value, _MAY_BE_LATE) and not in_lock_step
+    if value.tick != tick and not (may_be_late and 0 <= value.tick < tick):
         raise DecodeError(f"tick {tick}, {topics.wire(key)}: it is of tick {value.tick}")
     return value
 
 
-def value_of(kind: type[M], message: Selected) -> M:
+def value_of(kind: type[M], message: Selected, in_lock_step: bool = False) -> M:
     """The value of a message of a key that stands for this kind. Raises DecodeError."""
-    value = decoded(message)
+    value = decoded(message, in_lock_step)
     assert isinstance(value, kind)
     return value

@@ -13,6 +13,7 @@ import msgspec
 
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import LeadershipTerm, Lost, Outcome
+from onehop.contracts.operation import Punctuality
 from onehop.contracts.printable import printable
 from onehop.wire.codec import REFUSALS, as_map
 from onehop.wire.output_folder import REMEDY, SUMMARY, explained
@@ -31,8 +32,12 @@ def summarize(
     digest: str | None,
     log: str | None,
     processes: Iterable[Process] = (),
+    punctuality: Punctuality | None = None,
 ) -> dict[str, Any]:
-    """The JSON object of `run`; wall_s is the time of the ticks alone, without start and end."""
+    """The JSON object of `run`; wall_s is the time of the ticks alone, without start and end.
+
+    punctuality: of a mission in real time, under the key `realtime`.
+    """
     fields = as_map(outcome)
     rate = outcome.ticks / wall_s if wall_s > 0 else 0.0
     return {
@@ -46,6 +51,7 @@ def summarize(
         "digest": digest,
         "log": log,
         "collisions": outcome.collisions,
+        **({} if punctuality is None else {"realtime": as_map(punctuality)}),
     }
 
 
@@ -61,6 +67,13 @@ class _Summary(msgspec.Struct):
     sim_s: float
     digest: str | None
     collisions: int
+    realtime: Punctuality | None = None
+
+
+def punctuality_of(summary: Mapping[str, Any]) -> Punctuality | None:
+    """How a mission of real time kept its schedule; None for one in lock-step."""
+    said = summary.get("realtime")
+    return None if said is None else msgspec.convert(said, Punctuality)
 
 
 def decode_summary(text: str) -> dict[str, Any]:

@@ -62,6 +62,17 @@ class Deliveries:
             self._control_bytes = dict(sorted(control_bytes.items()))
         return Carriage(inboxes, RadioRecord(tick, time_ns, verdicts, self._control_bytes))
 
+    def take_receptions(self) -> list[tuple[int, Reception]]:
+        """Receivers that read, and what they have received since the last time, in order of arrival."""
+        if not self._receptions:
+            return []
+        self._receptions.sort(key=lambda reception: reception[:4])
+        taken: list[tuple[int, Reception]] = [
+            (one[3], one[4]) for one in self._receptions if one[3] not in self.stopped
+        ]
+        self._receptions = [one for one in self._receptions if one[3] in self.stopped]
+        return taken
+
     def forget(self, robot: RobotId) -> None:
         """A robot has left, or is another process: what waits for it is lost."""
         self._receptions = [one for one in self._receptions if one[3] != robot]

@@ -40,9 +40,24 @@ class EventQueue:
         self._sequence += 1
         heapq.heappush(self._events, (time_ns, self._sequence, event, argument))
 
+    def next(self) -> int:
+        """When something happens next [ns], NEVER if nothing does."""
+        return min(self._events[0][0] if self._events else NEVER, self._access.next_access)
+
     def run(self, until: int) -> None:
         """Everything that happens up to and including `until` [ns]."""
         self.horizon = until
+        self._run(until)
+
+    def follow(self, until: int) -> None:
+        """The same where at any instant behind it anything may come: what happens up to now is all.
+
+        So it makes no difference by which steps an instant is reached.
+        """
+        self.horizon = 0
+        self._run(until)
+
+    def _run(self, until: int) -> None:
         events, access, on_access = self._events, self._access, self._on_access
         while True:
             time_ns = events[0][0] if events else NEVER

@@ -1,13 +1,17 @@
 """The radio of a mission: `Radio.carry(truth)` moves every message through one tick.
 
-Here a tick meets the network: who is present, and what each robot hands to its NIC. How a message finds
-its way is in routing/, what becomes of it in deliveries.py, a hop in link_layer.py and dcf.py.
+Its steps can be taken one by one, where truths and messages come at any instant (continuous.py). Here a
+tick meets the network: who is present, and what each robot hands to its NIC. How a message finds its way
+is in routing/, what becomes of it in deliveries.py, a hop in link_layer.py and dcf.py.
 """
+
+from collections.abc import Iterable
 
 from onehop.contracts.briefings import RadioBriefing
 from onehop.contracts.messages import (
     Carriage,
     DeliveryStatus,
+    Reception,
     Transmission,
     TransmitRequest,
     Truth,
@@ -56,23 +60,48 @@ class Radio:
         self._events = self._link.events
         self._nics: dict[RobotId, tuple[Nic, Router]] = {}
         self._incarnations: tuple[tuple[int, int], ...] = ()
-        self._requests: tuple[TransmitRequest, ...] = ()
+        self._requests: dict[int, TransmitRequest] = {}
         self._numbers = dict.fromkeys(robots, 0)
         self._default_lifetime = nanoseconds(section.message_lifetime_s)
 
     def carry(self, truth: Truth) -> Carriage:
         """What reaches whom in the tick that ends at truth.time_ns, and what became of the rest."""
         start = truth.time_ns - self._period
-        self._update_nics(truth, start)
-        self._propagation.update(truth.present, truth.cuts, truth.jams, (start, truth.time_ns))
-        self._link.on_placed(start)
+        self.place(truth, start)
+        self.hand_over(truth.transmit_requests, start)
+        self._events.run(truth.time_ns)
+        return self._deliveries.carriage(truth, self._link.control_bytes)
+
+    def place(self, truth: Truth, now: int) -> None:
+        """Let a truth hold from now on [ns]; robots reach their places in it a period later."""
+        self._update_nics(truth, now)
+        self._propagation.update(truth.present, truth.cuts, truth.jams, (now, now + self._period))
+        self._link.on_placed(now)
         self._corrupter.in_force = truth.corruptions
         self._deliveries.stopped = truth.stopped
-        self._requests = truth.transmit_requests
-        talking = [request for request in truth.transmit_requests if request.outbox]
+        self._requests = {request.robot: request for request in truth.transmit_requests}
+
+    def hand_over(self, requests: Iterable[TransmitRequest], now: int) -> None:
+        """Take over what present robots hand to their NICs [ns]: all that do so at this instant."""
+        talking = []
+        for request in requests:
+            self._requests[request.robot] = request
+            if request.outbox:
+                talking.append(request)
         if talking:
-            self._submit_all(talking, start)
-        self._events.run(truth.time_ns)
+            self._submit_all(talking, now)
+
+    def next_event(self) -> int:
+        """When something happens next on the air, or a timer expires [ns]."""
+        return self._events.next()
+
+    def follow(self, until: int) -> list[tuple[int, Reception]]:
+        """What happens up to an instant that was not known before [ns]; who has received what in it."""
+        self._events.follow(until)
+        return self._deliveries.take_receptions()
+
+    def account(self, truth: Truth) -> Carriage:
+        """What became of messages since the last account; inboxes hold what cards heard of others."""
         return self._deliveries.carriage(truth, self._link.control_bytes)
 
     def _update_nics(self, truth: Truth, now: int) -> None:
@@ -107,10 +136,7 @@ class Radio:
 
     def _request_of(self, robot: RobotId) -> TransmitRequest:
         """The robot's last word about its speed and distance; at rest when it has said nothing yet."""
-        for request in self._requests:
-            if request.robot == robot:
-                return request
-        return TransmitRequest(robot, 0.0, 0.0, ())
+        return self._requests.get(robot) or TransmitRequest(robot, 0.0, 0.0, ())
 
     def _submit_all(self, requests: list[TransmitRequest], now: int) -> None:
         """Take over what the robots send in this tick; of several, each frame draws a backoff."""

@@ -139,8 +139,7 @@ def test_a_briefing_may_have_any_length(network: Network, name: str, size: int) 
 def test_no_thread_outlives_its_session(
     monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """Sessions close while their pulse beats without a pause and others come and go."""
-    monkeypatch.setattr(bus, "PULSE_S", 0.0)
+    """Sessions close while others come and go."""
     raised: list[threading.ExceptHookArgs] = []
     monkeypatch.setattr(threading, "excepthook", raised.append)
     before = threading.enumerate()
@@ -174,8 +173,10 @@ def test_a_session_closes_though_nobody_has_made_room_for_its_messages(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(bus, "CHANNEL_MESSAGES", 3)
-    monkeypatch.setattr(bus, "PULSE_S", 0.0)
     with open_router("m", free_endpoint()) as world:
         world.receive_by(time.monotonic() + 0.01)
+        for _ in range(3):
+            world.tell_self("word")
+        world._alarm.ring_by(0.0)  # and its thread waits for room
         time.sleep(0.1)
-    assert "pulse" not in [thread.name for thread in threading.enumerate()]
+    assert "alarm" not in [thread.name for thread in threading.enumerate()]

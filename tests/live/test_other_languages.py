@@ -13,7 +13,7 @@ import pytest
 from onehop.checking import judge
 from onehop.drivers.replay import replay
 from onehop.wire.log_reader import LogFile
-from tests.onehop.test_cli import onehop
+from tests.onehop.command_line import in_shell as onehop
 
 pytestmark = pytest.mark.live
 

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from tests.onehop.command_line import in_shell as onehop
 from tests.onehop.plugins.conftest import parts
 from tests.onehop.plugins.package import MODULE
 from tests.onehop.scenes import field, log_of
-from tests.onehop.test_cli import onehop
 
 __all__ = ["parts"]
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from tests.onehop.test_cli import onehop
+from tests.onehop.command_line import in_shell as onehop
 
 pytestmark = pytest.mark.live
 

@@ -1,7 +1,8 @@
-"""The command `onehop` in the process of the test: what a person gets to see, without a new Python."""
+"""The command `onehop` in tests: in their own process, without a new Python, or in one of its own."""
 
 import contextlib
 import io
+import os
 import signal
 import subprocess
 import sys
@@ -29,6 +30,30 @@ def onehop(*arguments: object, cwd: Path | None = None) -> "subprocess.Completed
         except SystemExit as left:
             status = int(left.code or 0)
     return subprocess.CompletedProcess(words, status, out.getvalue(), err.getvalue())
+
+
+def in_shell(
+    *arguments: str | Path, cwd: Path | None = None, shell: str = "true", **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """Run the command in a process of its own. shell: what a shell does before it, such as `ulimit`."""
+    return subprocess.run(
+        [
+            "bash",
+            "-c",
+            f'{shell}; exec "$@"',
+            "bash",
+            sys.executable,
+            "-m",
+            "onehop",
+            *map(str, arguments),
+        ],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        cwd=cwd,
+        env={**os.environ, **environment},
+    )
 
 
 @contextlib.contextmanager

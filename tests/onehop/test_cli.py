@@ -13,32 +13,8 @@ from mcap.reader import make_reader
 
 from onehop.analysis.log import open_log
 from onehop.wire.log_reader import LogFile, digest
-from tests.onehop.command_line import onehop
+from tests.onehop.command_line import in_shell, onehop
 from tests.onehop.scenes import FIELD, field, log_of
-
-
-def in_shell(
-    *arguments: str | Path, cwd: Path | None = None, shell: str = "true", **environment: str
-) -> subprocess.CompletedProcess[str]:
-    """Run the command in a process of its own. shell: what a shell does before it, such as `ulimit`."""
-    return subprocess.run(
-        [
-            "bash",
-            "-c",
-            f'{shell}; exec "$@"',
-            "bash",
-            sys.executable,
-            "-m",
-            "onehop",
-            *map(str, arguments),
-        ],
-        capture_output=True,
-        text=True,
-        timeout=120,
-        check=False,
-        cwd=cwd,
-        env={**os.environ, **environment},
-    )
 
 
 @pytest.fixture(scope="module")

@@ -16,6 +16,7 @@ from onehop.analysis.report.report_data import ReportData, gather
 from onehop.analysis.report.team_table import team_table
 from onehop.contracts.printable import printable
 from onehop.wire.codec import as_map
+from onehop.wire.summary import punctuality_of
 
 _CSS = Path(__file__).with_name("page.css").read_text(encoding="utf-8")
 
@@ -126,10 +127,12 @@ def _narrative_table(events: list[NarrativeEvent]) -> str:
 
 def _run_table(report: ReportData) -> str:
     log, summary = report.log, report.log.summary or {}
+    punctuality = punctuality_of(summary)
     rows = {
         "scenario": f"{log.scenario.name}, seed {log.scenario.seed}",
         "driver": log.metadata.get("driver", ""),
         "simulated": f"{report.end_s:.1f} s in ticks of {report.period_s * 1e3:.0f} ms",
+        **({} if punctuality is None else {"real time": punctuality.in_words()}),
         "collisions": summary.get("collisions", ""),
         "digest": summary.get("digest", ""),
         "log": f"{log.path.name}{' (torn: its recorder was killed)' if log.torn else ''}",

@@ -21,7 +21,7 @@ from onehop.contracts.errors import InputError
 from onehop.maps.map_file import load_map
 from onehop.maps.walls import segment_distances
 from onehop.wire.log_writer import LOG_EPOCH_NS
-from tests.onehop.test_cli import onehop
+from tests.onehop.command_line import onehop
 from world_server.core.world import KILLED
 
 from .conftest import LEADER, SUCCESSOR

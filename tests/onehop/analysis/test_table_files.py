@@ -12,8 +12,8 @@ from onehop.analysis import Log
 from onehop.analysis.columns import TABLES
 from onehop.analysis.table_files import write_csv, write_parquet
 from onehop.contracts.errors import InputError
+from tests.onehop.command_line import onehop
 from tests.onehop.log_forms import Form, ticks_of, write_form
-from tests.onehop.test_cli import onehop
 
 
 def test_csv_has_every_row_of_every_table(log: Log, tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from onehop.commands.new import new
 from onehop.contracts.errors import InputError
-from tests.onehop.test_cli import onehop
+from tests.onehop.command_line import in_shell as onehop
 
 
 @pytest.fixture(scope="module")

@@ -25,8 +25,8 @@ from radio_proxy.core.path_loss import OWN_DB, SILENT_DB, HeldToRange
 from radio_proxy.core.routing import built_in as routing
 from robot_agent.core.motion import gains
 from robot_agent.core.planning import pathfinder
+from tests.onehop.command_line import in_shell as onehop
 from tests.onehop.scenes import field, log_of
-from tests.onehop.test_cli import onehop
 
 pytestmark = pytest.mark.usefixtures("parts")
 

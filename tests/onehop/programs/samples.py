@@ -84,6 +84,14 @@ class Seeker(Program):
         return None
 
 
+class Dawdler(Seeker):
+    """A Seeker that thinks for two ticks of 50 ms."""
+
+    def step(self, percept: Percept) -> Action:
+        time.sleep(0.11)
+        return super().step(percept)
+
+
 class Unready(Program):
     """Fails before its first step."""
 

@@ -12,8 +12,8 @@ from onehop.drivers.replay import replay
 from onehop.scenario.as_toml import as_toml
 from onehop.scenario.scenario_file import load
 from onehop.wire.log_reader import LogFile
+from tests.onehop.command_line import in_shell as onehop
 from tests.onehop.scenes import field, log_of
-from tests.onehop.test_cli import onehop
 
 COMMAND = "robots=[{id=3, command=['./mine', '-v'], parameters={how='x'}}]"
 

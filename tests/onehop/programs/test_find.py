@@ -10,9 +10,9 @@ from onehop.contracts.program_section import BUILT_IN
 from onehop.plugins import PROGRAMS, installed
 from onehop.programs.find import find
 from robot_agent.core.robot import Robot
+from tests.onehop.command_line import in_shell as onehop
 from tests.onehop.programs.fickle import Fickle
 from tests.onehop.programs.samples import Seeker
-from tests.onehop.test_cli import onehop
 
 
 def test_the_built_in_team_is_offered_by_name_like_any_other_program() -> None:

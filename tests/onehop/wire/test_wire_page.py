@@ -38,6 +38,8 @@ LAYOUTS: dict[str, type] = {
     "Pose": Pose,
     "Twist": Twist,
     "Inbox": messages.Inbox,
+    "Heard": messages.Heard,
+    "Acted": messages.Acted,
     "Reception": messages.Reception,
     "Neighbour": Neighbour,
     "Action": messages.Action,
@@ -140,8 +142,11 @@ def test_words_of_a_team_are_listed() -> None:
 def test_the_keys_are_those_of_a_robot() -> None:
     name = topics.robot_name(5)
     said = re.findall(r"^\| `(\S+)` \|", section("What is said"), flags=re.M)
-    hears = (topics.PERCEPT, topics.STOP, topics.WAKE, topics.KILL, topics.END)
-    puts = (topics.ARRIVAL, topics.OUT, topics.AWAKE, topics.FAILED)
+    hears = (
+        *(topics.PERCEPT, topics.OBSERVATION, topics.HEARD),
+        *(topics.STOP, topics.WAKE, topics.KILL, topics.END),
+    )
+    puts = (topics.ARRIVAL, topics.OUT, topics.ACTED, topics.AWAKE, topics.FAILED)
     assert said == [topics.to(name, one) for one in hears] + [topics.by(name, one) for one in puts]
     for key in (topics.to("robot-", topics.PERCEPT), topics.by("robot-", topics.PART)):
         assert key.partition("robot-")[0] in PAGE

@@ -1,0 +1,147 @@
+"""A mission in real time without a clock: robots answer when a seed says so.
+
+World, radio and programs are the real ones, and so is what puts questions, answers and the record
+together; bus and wall clock are not there. So it takes no longer than it must, and is always the same.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from onehop.contracts import topics
+from onehop.contracts.briefings import radio_briefing, robot_briefing
+from onehop.contracts.messages import Outcome, TransmitRequest, Truth
+from onehop.contracts.operation import Punctuality
+from onehop.maps.map_file import load_map
+from onehop.programs.host import Host
+from onehop.scenario.bundle import Bundle
+from onehop.wire.batch import unpack_ticks
+from onehop.wire.codec import encode
+from onehop.wire.journal import Journal, WireMessage
+from onehop.wire.log_writer import LogWriter
+from onehop.wire.summary import summarize
+from radio_proxy.core.bounds import make_radio
+from radio_proxy.core.continuous import ContinuousRadio, Due
+from robot_agent.latest_data import LatestData
+from world_server.core.command_hold import CommandHold
+from world_server.core.world import World
+from world_server.realtime.recording import RealTimeRecording
+from world_server.realtime.robots import RealTimeRobots
+
+ANSWERS = 0.8
+"""How probable it is that a robot that was asked answers before the tick ends."""
+
+
+class _Bus:
+    """Passes on what is put; nobody is ever absent or turned out."""
+
+    def __init__(self) -> None:
+        self.takers: dict[str, Callable[[bytes], None]] = {}
+        self.readers: dict[str, Callable[[bytes], None]] = {}
+        self.shut_out = self.read_stray = lambda _: None
+
+    def publisher(self, key: str, **_: Any) -> Callable[[bytes], None]:
+        return lambda data: self.takers[key](data)
+
+    def read(self, name: str, what: str, reader: Callable[[bytes], None]) -> None:
+        self.readers[topics.by(name, what)] = reader
+
+
+class Jitter:
+    """One mission. seed: of what is a matter of time."""
+
+    def __init__(self, bundle: Bundle, seed: int = 1) -> None:
+        scenario = bundle.scenario
+        self._scenario = scenario
+        walls = load_map(scenario.map, bundle.files)
+        self._rng = np.random.default_rng(seed)
+        self._world = World(scenario, walls)
+        self._radio = ContinuousRadio(make_radio(radio_briefing(scenario, walls.segments)))
+        self._hold = CommandHold(scenario)
+        bus: Any = _Bus()
+        self._bus = bus
+        ids = scenario.team.robots
+        roll: Any = type("Roll", (), {"present": {topics.robot_name(i) for i in ids}})
+        self._robots = RealTimeRobots(bus, bus, roll, ids, 1e9, self._hand_over)
+        self._recording = RealTimeRecording(bus, bus, scenario.clock.period_ns, self._on_lie)
+        self._processes: dict[int, tuple[int, LatestData]] = {}
+        self._told: list[WireMessage] = []
+        for i in ids:
+            bus.takers[topics.to(topics.robot_name(i), topics.OBSERVATION)] = self._taker(i)
+        self._now_ns = 0
+        self._out: list[bytes] = []
+        bus.takers[topics.to(topics.RECORDER, topics.TICKS)] = self._out.append
+
+    def write(self, path: Path, bundle: Bundle) -> Outcome:
+        """Run it and write its log."""
+        outcome = None
+        while outcome is None:
+            truth = self._world.truth()
+            self._begin(truth)
+            self._let_robots_act(truth)
+            answers = self._robots.close(truth, frozenset())
+            self._recording.end(truth.tick, answers)
+            self._world.advance(self._hold.filled(truth, answers.actions))
+            for robot, why in answers.fenced.items():
+                self._world.fence(robot, why)
+            outcome = self._world.outcome()
+        self._close(self._world.time_ns)
+        self._recording.hand_over()
+        log = LogWriter(path, bundle, "jitter")
+        journal = Journal(log.write)
+        for data in self._out:
+            for tick, messages in unpack_ticks(data):
+                journal.add(tick, messages)
+        punctual = Punctuality(1.0, 0.0, 0, 0.0, 0.0, 0, 0)
+        log.close(summarize(outcome, 1.0, journal.digest(), str(path), punctuality=punctual))
+        return outcome
+
+    def _begin(self, truth: Truth) -> None:
+        for one in truth.present:
+            i, incarnation = one.robot, one.incarnation
+            if i not in self._processes or self._processes[i][0] != incarnation:
+                host = Host(robot_briefing(self._scenario, i, incarnation))
+                put = self._bus.readers[topics.by(topics.robot_name(i), topics.ACTED)]
+                self._processes[i] = incarnation, LatestData(host, put)
+        self._close(truth.time_ns + int(self._rng.integers(0, 3_000_000)))
+        self._deliver(self._radio.place(truth, self._radio.now_ns))
+        observations = {i: encode(seen) for i, seen in self._world.observe().items()}
+        self._robots.ask(truth, observations)
+        said = [(topics.obs(i), data) for i, data in observations.items()]
+        self._recording.begin(truth.tick, [(topics.TRUTH, encode(truth)), *said])
+
+    def _close(self, at_ns: int) -> None:
+        due, record = self._radio.close(at_ns)
+        self._deliver(due)
+        if record is not None:
+            radio = topics.RADIO_RECORD, encode(record)
+            self._recording.take((record.tick, [radio, *self._told]))
+            self._told = []
+
+    def _let_robots_act(self, truth: Truth) -> None:
+        period_ns = self._scenario.clock.period_ns
+        acting = []
+        for i, (_, process) in self._processes.items():
+            late, in_time = self._rng.integers(0, period_ns), self._rng.random() < ANSWERS
+            if process.can_step and in_time and i not in truth.stopped:
+                acting.append((truth.time_ns + int(late), i))
+        for self._now_ns, i in sorted(acting):
+            self._deliver(self._radio.follow(self._now_ns))
+            self._processes[i][1].step()
+
+    def _taker(self, i: int) -> Callable[[bytes], None]:
+        return lambda data: self._processes[i][1].on_observation(data)
+
+    def _hand_over(self, request: TransmitRequest) -> None:
+        self._deliver(self._radio.hand_over(request, max(self._now_ns, self._radio.now_ns)))
+
+    def _deliver(self, due: Due) -> None:
+        for i, heard in due:
+            data = encode(heard)
+            self._told.append((topics.rx(i), data))
+            self._processes[i][1].on_heard(data)
+
+    def _on_lie(self, robot: int) -> None:
+        raise AssertionError(f"robot {robot} names what it was not given")
