@@ -1,10 +1,10 @@
-"""A running team among ROS 2 nodes: an implementation of rmw_zenoh's wire by others sees and drives it."""
+"""A running team among ROS 2 nodes: another implementation of rmw_zenoh's wire sees and drives it."""
 
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -50,12 +50,12 @@ def endpoint() -> str:
 
 
 @pytest.fixture
-def driven(endpoint: str, tmp_path: Path) -> Iterator[Mission]:
+def driven(endpoint: str, tmp_path: Path) -> Mission:
     """A mission in real time whose robot 4 is driven by ROS 2; it lasts until it is told to end."""
     parameters = f'parameters={{router="{endpoint}", hold_s=1.0}}'
     robots = f'robots=[{{id=4, program="onehop.ros2.robot:Ros2Robot", {parameters}}}]'
     options = ("--clock", "realtime", "--ros2", "--ros-router", endpoint, "--no-view")
-    yield Mission(tmp_path, robots, "goal.x=39", "goal.y=39", options=options)
+    return Mission(tmp_path, robots, "goal.x=39", "goal.y=39", options=options)
 
 
 def test_a_peer_sees_the_team_and_drives_one_of_it(driven: Mission, endpoint: str) -> None:
