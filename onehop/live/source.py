@@ -9,6 +9,7 @@ from typing import Any
 
 from onehop.analysis.explanation import explain
 from onehop.analysis.explanation_text import explanation_text
+from onehop.analysis.growing_log import GrowingLog
 from onehop.analysis.log import Log
 from onehop.analysis.report.narrative import summary_sentence
 from onehop.contracts import topics
@@ -16,7 +17,6 @@ from onehop.contracts.errors import DecodeError, InputError, LogError
 from onehop.contracts.messages import Action, RadioRecord, Truth
 from onehop.contracts.printable import printable
 from onehop.live.frame import Moment, frame, scan
-from onehop.live.growing_log import GrowingLog
 from onehop.live.setting import setting
 from onehop.live.story import Story
 from onehop.mission.rendezvous import way_into

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from onehop.analysis.growing_log import GrowingLog
 from onehop.analysis.log import open_log
 from onehop.analysis.report.narrative import narrative
 from onehop.analysis.report.report_data import gather
 from onehop.contracts.errors import LogError
 from onehop.contracts.fault_section import FaultSection
 from onehop.live.frame import LOST_TICKS
-from onehop.live.growing_log import GrowingLog
 from onehop.live.source import Source
 from tests.onehop.analysis.conftest import (
     HELD,
