@@ -164,6 +164,21 @@ def test_a_mission_that_is_paused_can_be_ended(tmp_path: Path) -> None:
     assert summary["reason"] == "stopped by the operator"
 
 
+def test_a_mission_by_the_wall_clock_heeds_faults_and_no_pace(tmp_path: Path) -> None:
+    scenario = tmp_path / "field.toml"
+    scenario.write_text(FIELD)
+    timed = ('clock.mode="realtime"', "clock.speed=4", "clock.limit_s=8")
+    with shown_mission(tmp_path, scenario, *timed) as shown:
+        with PageClient(shown.url) as page:
+            page.until(lambda one: one.tick >= 3)
+            assert not page.news["hand"]["is_paced"]
+            page.say("pace", ticks_per_s=0, paused=True, steps=0)
+            assert page.order(kind="hold", robots=[2], duration_s=1)["done"]
+            page.until(lambda one: one.news["state"]["state"] == "ended")
+        assert shown.finish()[0] == 1
+    assert LogFile(tmp_path / "out" / "mission.mcap").summary is not None
+
+
 def test_a_mission_that_nobody_watches_ends_as_without_a_page(tmp_path: Path) -> None:
     scenario = tmp_path / "field.toml"
     scenario.write_text(FIELD)
