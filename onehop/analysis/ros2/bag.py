@@ -98,10 +98,10 @@ class _Bag:
             if (seen := wire.get(topics.obs(robot))) is not None:
                 self._add_scan(at_ns, robot, value_of(Observation, seen), seen)
             if (heard := wire.get(topics.rx(robot))) is not None:
-                for reception in value_of(Inbox, heard).receptions:
+                for reception in value_of(Inbox, heard, self._log.in_lock_step).receptions:
                     self._heard[robot] = reception
             if (said := wire.get(topics.out(robot))) is not None:
-                actions[robot] = value_of(Action, said)
+                actions[robot] = value_of(Action, said, self._log.in_lock_step)
                 self._add_action(at_ns, robot, actions[robot])
         for told in events(truth, actions):
             self._put("/events", "rcl_interfaces/msg/Log", at_ns, make.log(at_ns, told))
