@@ -90,7 +90,7 @@ def build(
 ) -> dict[str, Table]:
     """Several tables in one pass over the messages; each message is decoded once.
 
-    in_lock_step: no robot can be late. Raises DecodeError for a message that is none of its key and tick.
+    in_lock_step: nobody can be late. Raises DecodeError for a message that is none of its key and tick.
     """
     builders = {name: _Builder(TABLES[name]) for name in names}
     by_stem: dict[str, list[_Builder]] = {}
