@@ -97,12 +97,17 @@ class Log:
         """(tick, what a robot did)."""
         return self._typed(Action, topics.out(robot), start_s, end_s)
 
+    @property
+    def in_lock_step(self) -> bool:
+        """Whether each robot acted on what it was told in the same tick."""
+        return not self.scenario.clock.is_realtime
+
     def _typed(
         self, kind: type[M], key: str, start_s: float, end_s: float | None
     ) -> Iterator[tuple[int, M]]:
         for message in self.messages(key, start_s=start_s, end_s=end_s):
             try:
-                value = value_of(kind, message)
+                value = value_of(kind, message, self.in_lock_step)
             except DecodeError as error:
                 raise forged(self.path, error) from None
             yield message.tick, value
@@ -157,7 +162,7 @@ class Log:
     def build(self, names: Iterable[str], messages: Iterable[Selected]) -> dict[str, Table]:
         """Several tables of messages of this log. Raises LogError for a message that cannot be one."""
         try:
-            tables = build(names, messages, self.period_ns)
+            tables = build(names, messages, self.period_ns, self.in_lock_step)
         except DecodeError as error:
             raise forged(self.path, error) from None
         for name, table in tables.items():

@@ -85,10 +85,12 @@ class _Builder:
         return table
 
 
-def build(names: Iterable[str], messages: Iterable[Selected], period_ns: int) -> dict[str, Table]:
+def build(
+    names: Iterable[str], messages: Iterable[Selected], period_ns: int, in_lock_step: bool = True
+) -> dict[str, Table]:
     """Several tables in one pass over the messages; each message is decoded once.
 
-    Raises DecodeError for a message that is none of its key and tick.
+    in_lock_step: nobody can be late. Raises DecodeError for a message that is none of its key and tick.
     """
     builders = {name: _Builder(TABLES[name]) for name in names}
     by_stem: dict[str, list[_Builder]] = {}
@@ -98,7 +100,7 @@ def build(names: Iterable[str], messages: Iterable[Selected], period_ns: int) ->
         stem, _, robot = selected.key.partition("/")
         wanting = by_stem.get(stem)
         if wanting:
-            message, sender = decoded(selected), int(robot or 0)
+            message, sender = decoded(selected, in_lock_step), int(robot or 0)
             for builder in wanting:
                 builder.add(selected.tick, message, sender)
     return {name: builder.finish(period_ns) for name, builder in builders.items()}

@@ -96,9 +96,10 @@ def replay(
     """
     original = log.bundle.scenario
     search_in(log.bundle.folder)
-    wanted, foreign = original.team.robots if robots is None else robots, outsiders(original)
+    wanted = original.team.robots if robots is None else robots
+    check(scenario or original, str(log.path), wanted)
+    foreign = outsiders(original)
     chosen = tuple(robot for robot in wanted if robot not in foreign)
-    check(scenario or original, str(log.path), chosen)
     players: dict[str, Player] = {
         topics.out(i): RobotPlayer(scenario or original, i).play for i in chosen
     }

@@ -141,6 +141,35 @@ def test_when_recorder_and_robot_are_cut_off_the_log_lacks_nothing_and_the_robot
     assert max(speaks(log, 1)) > back
 
 
+@pytest.mark.campaign
+@pytest.mark.parametrize(
+    ("key", "size", "why"),
+    [
+        ("to/robot-1/order", 1_000, "silent for 2 s"),
+        ("from/robot-3/acted", 100, "put no answer: Acted: not msgpack"),
+        ("from/robot-3/acted", 100_000_000, "its process died"),
+    ],
+)
+def test_a_robot_that_floods_the_bus_makes_no_tick_late(
+    tmp_path: Path, key: str, size: int, why: str
+) -> None:
+    """The robot in Python that is started says what nobody may say, or much too much."""
+    command = f'command=["python", "-m", "tests.live.rogue", "{key}", "{size}"]'
+    where = {"PYTHONPATH": str(Path(__file__).parents[2])}
+    mission = Mission(
+        tmp_path,
+        *(REAL_TIME, "clock.limit_s=8", "clock.silence_s=2", "robot.leader_speed=0.2"),
+        f"robots=[{{id=3, {command}}}]",
+        environment=where,
+    )
+    summary = mission.finish()
+    assert summary["realtime"]["latest_ms"] < 50.0
+    lost = {one["robot"]: one["why"] for one in summary["lost"]}
+    assert lost[3].startswith(why)
+    assert set(lost.values()) - {lost[3]} == {"did not arrive"}
+    proven(mission.out / "mission.mcap")
+
+
 def hold_up(pid: int, seconds: float, *others: int) -> None:
     """Stop processes for a while."""
     for number in (signal.SIGSTOP, signal.SIGCONT):

@@ -83,10 +83,10 @@ class Publications:
                 if (seen := wire.get(topics.obs(robot))) is not None:
                     yield self._scan(at_ns, robot, value_of(Observation, seen), seen)
             if (heard := wire.get(topics.rx(robot))) is not None:
-                for reception in value_of(Inbox, heard).receptions:
+                for reception in value_of(Inbox, heard, self._log.in_lock_step).receptions:
                     self._heard[robot] = reception
             if (said := wire.get(topics.out(robot))) is not None:
-                actions[robot] = value_of(Action, said)
+                actions[robot] = value_of(Action, said, self._log.in_lock_step)
                 yield from self._mode(at_ns, robot, actions[robot])
                 if whole:
                     yield from self._driving(at_ns, robot, actions[robot])

@@ -59,6 +59,7 @@ class ViewerChannels:
         self._strides = {
             s: max(1, round(s * 1e9 / log.period_ns)) for s in (POSE_S, SCAN_S, LINK_S, BODY_S)
         }
+        self._in_lock_step = log.in_lock_step
         self._walls = load_map(scenario.map, log.bundle.files).segments
         bodies = dict(zip(log.robots, scenario.bodies, strict=True))
         self._radii = {robot: body.radius for robot, body in bodies.items()}
@@ -92,7 +93,7 @@ class ViewerChannels:
         if tick % self._strides[SCAN_S] == 0:
             self._add_scans(tick, stamp, wire, poses)
         actions = {
-            robot: value_of(Action, wire[topics.out(robot)])
+            robot: value_of(Action, wire[topics.out(robot)], self._in_lock_step)
             for robot in poses
             if topics.out(robot) in wire
         }
@@ -126,7 +127,7 @@ class ViewerChannels:
         for robot in poses:
             message = wire.get(topics.rx(robot))
             if message is not None:
-                for one in value_of(Inbox, message).receptions:
+                for one in value_of(Inbox, message, self._in_lock_step).receptions:
                     self._heard[robot] = one.snr_db, one.bit_error_rate
 
     def _add_poses(self, tick: int, stamp: int, poses: dict[int, Pose]) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from onehop.analysis import open_log
 from onehop.analysis.salvage import salvage
 from onehop.checking import judge
 from onehop.contracts.errors import LogError, ScenarioError
@@ -179,6 +180,13 @@ def test_a_torn_log_is_judged_and_executed_up_to_its_last_whole_tick(
     saved = salvage(torn, tmp_path / "saved.mcap")
     assert saved.ticks >= report.ticks
     assert replay(LogFile(tmp_path / "saved.mcap")).divergences == 0
+
+
+def test_tables_have_the_actions_of_robots_that_were_late(quiet: Path) -> None:
+    log = open_log(quiet)
+    said = {tick: action.tick for tick, action in log.actions(1)}
+    assert any(answered < tick for tick, answered in said.items())
+    assert log.table("status").of(1)["tick"].tolist() == list(said)
 
 
 def test_one_process_has_no_real_time(tmp_path: Path) -> None:
