@@ -2,7 +2,7 @@
 
 It imports zenoh and msgpack and the standard library. `onehop run` starts it with
     --mission PREFIX --lifeline FD --id ROBOT --connect ENDPOINT
-and its password in ONEHOP_PASSWORD.
+and its password in ONEHOP_PASSWORD, or with --keys DIR, the folder of its certificate.
 """
 
 import argparse
@@ -89,10 +89,26 @@ def cosine(angle: float) -> float:
     return sine(angle + PI / 2.0 if angle <= PI / 2.0 else angle - 3.0 * PI / 2.0)
 
 
+def identity(name: str, keys: str | None) -> dict[str, Any]:
+    """What Zenoh has to know of who this is: a certificate, or else a password."""
+    if keys is None:
+        secret = os.environ["ONEHOP_PASSWORD"]
+        proof: dict[str, Any] = {"transport/auth/usrpwd": {"user": name, "password": secret}}
+    else:
+        secret, tls, own = name, "transport/link/tls/", os.path.join(keys, name)
+        proof = {
+            tls + "root_ca_certificate": os.path.join(own, "ca.pem"),
+            tls + "enable_mtls": True,
+            tls + "connect_certificate": os.path.join(own, "cert.pem"),
+            tls + "connect_private_key": os.path.join(own, "key.pem"),
+        }
+    return {**proof, "id": "1" + hashlib.sha256(secret.encode()).hexdigest()[:31]}
+
+
 class Bus:
     """This process's session: what it hears comes through one queue, in the order of its arrival."""
 
-    def __init__(self, mission: str, name: str, endpoint: str, password: str) -> None:
+    def __init__(self, mission: str, name: str, endpoint: str, keys: str | None) -> None:
         settings = {
             "mode": "client",
             "connect/endpoints": [endpoint],
@@ -102,8 +118,7 @@ class Bus:
             "scouting/multicast/enabled": False,
             "transport/unicast/qos/enabled": False,
             "transport/unicast/lowlatency": True,
-            "transport/auth/usrpwd": {"user": name, "password": password},
-            "id": "1" + hashlib.sha256(password.encode()).hexdigest()[:31],
+            **identity(name, keys),
         }
         config = zenoh.Config()
         for key, value in settings.items():
@@ -218,10 +233,10 @@ def main() -> int:
     parser.add_argument("--lifeline", type=int)
     parser.add_argument("--id", type=int, required=True)
     parser.add_argument("--connect", required=True)
+    parser.add_argument("--keys")
     options = parser.parse_args()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for whoever started the mission
-    password = os.environ["ONEHOP_PASSWORD"]
-    bus = Bus(options.mission, f"robot-{options.id}", options.connect, password)
+    bus = Bus(options.mission, f"robot-{options.id}", options.connect, options.keys)
     robot = Simple(bus.briefing())
     bus.announce()
     heard: list[dict[str, Any]] = []

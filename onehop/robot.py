@@ -84,9 +84,14 @@ class Program(ABC):
 
     Parameters: a frozen dataclass that says which parameters a scenario may give, with defaults, and
     with ranges as in `Annotated[float, Range(0.0, 2.0)]`. `briefing.parameters` is an instance of it.
+
+    reproducible: whether it goes by its briefing and its percepts alone. One that is driven by somebody
+    outside says False: it is not re-executed from a log, what it said is taken as it is; and it has no
+    place in missions of one process, where nobody outside can keep up.
     """
 
     Parameters: ClassVar[type[Any]] = NoParameters
+    reproducible: ClassVar[bool] = True
 
     @abstractmethod
     def __init__(self, briefing: Briefing) -> None:

@@ -4,6 +4,7 @@ It holds within a tick, when everyone has said what they had to say for it and b
 order of a fault that comes meanwhile is carried out with the next tick, and lets that one tick pass.
 """
 
+import contextlib
 import math
 import time
 
@@ -12,7 +13,7 @@ from onehop.contracts.errors import DecodeError
 from onehop.contracts.operation import Pace
 from onehop.wire.codec import decode
 from world_server.fault_orders import FaultOrders
-from world_server.mailbox import Mailbox
+from world_server.mailbox import Mailbox, MissionBrokenError
 from world_server.recording import Recording
 
 LOOK_S = 60.0
@@ -40,11 +41,15 @@ class PaceKeeper:
         mail.read(topics.OPERATOR, topics.PACE, self._on_pace)
 
     def hold(self) -> None:
-        """Wait as long as the pace wants it. Raises MissionBrokenError."""
+        """Wait as long as the pace wants it.
+
+        When the mission is broken off meanwhile, the tick ends as any other, and the next one finds out.
+        """
         if self._pace.paused:
             self._recording.hand_over()  # people look at what has happened so far
-            while not self._mail.wait(self._may_go_on, LOOK_S):
-                pass
+            with contextlib.suppress(MissionBrokenError):
+                while not self._mail.wait(self._may_go_on, LOOK_S):
+                    pass
             self._steps = max(0, self._steps - 1)
         elif self._pace.ticks_per_s > 0:
             self._keep_time(1.0 / self._pace.ticks_per_s)

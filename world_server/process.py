@@ -3,6 +3,7 @@
 import argparse
 import signal
 import time
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -46,7 +47,7 @@ def main() -> int:
     with scenario_file.in_file(options.scenario):
         world = World(bundle.scenario, walls)
     world.observe()  # compiles or loads the laser kernel before anyone waits for it
-    with startup.listen(options, topics.clients(bundle.scenario.team.robots)) as bus:
+    with startup.host(options, topics.clients(bundle.scenario.team.robots)) as bus:
         _host(bus, bundle, world, walls.segments, options.driver, options.start_s)
     return 0
 
@@ -59,7 +60,9 @@ def _options() -> argparse.Namespace:
     parser.add_argument("--map", type=Path)
     parser.add_argument("--start", metavar="X,Y")
     parser.add_argument("--goal", metavar="X,Y")
-    parser.add_argument("--listen", required=True, metavar="ENDPOINT", help="e.g. tcp/127.0.0.1:7447")
+    router = parser.add_mutually_exclusive_group(required=True)
+    router.add_argument("--listen", metavar="ENDPOINT", help="be the router, e.g. at tcp/127.0.0.1:7447")
+    router.add_argument("--connect", metavar="ENDPOINT", help="be the client of one, e.g. tls/base:7447")
     startup.add_keys(parser)
     parser.add_argument(
         "--start-s", type=float, default=START_S, metavar="S", help="how long to wait for the others [s]"
@@ -80,6 +83,7 @@ def _host(
     make = real_time if clock.is_realtime else lock_step
     mission = make(Parts(bus, mail, roll, world, bundle.scenario, open_briefings))
     recording = mission.recording
+    tell_the_end = _farewell(bus, roll)
     _heed_stops(bus, mail)
     mail.read(topics.RECORDER, topics.FAILED, lambda why: mail.break_off(why.decode(errors="replace")))
     bus.watch("*")
@@ -96,7 +100,7 @@ def _host(
     wall_s = time.monotonic() - started
     recording.hand_over()
     mail.close_mission()
-    _tell_the_end(bus, roll, End(outcome, recording.last_tick, wall_s, mission.punctuality))
+    tell_the_end(End(outcome, recording.last_tick, wall_s, mission.punctuality))
     mail.wait(lambda: roll.present.isdisjoint(roll.everyone), FAREWELL_S)
 
 
@@ -107,10 +111,19 @@ def _heed_stops(bus: Bus, mail: Mailbox) -> None:
     signal.signal(signal.SIGTERM, lambda *_: bus.tell_self(topics.CONTROL))
 
 
-def _tell_the_end(bus: Bus, roll: RollCall, end: End) -> None:
-    """Tell recorder and operator how the mission ended, and everyone that it has."""
-    for name in (topics.RECORDER, topics.OPERATOR):
-        bus.publisher(topics.to(name, topics.END))(encode(end))
-    for name in roll.everyone:
-        if name != topics.RECORDER:
-            bus.publisher(topics.to(name, topics.END))(b"")
+def _farewell(bus: Bus, roll: RollCall) -> Callable[[End], None]:
+    """What tells recorder and operator how the mission ended, and everyone that it has.
+
+    It is made at the start: a router's client has to learn of those who hear it before it says anything.
+    """
+    names = (topics.OPERATOR, *roll.everyone)
+    puts = {name: bus.publisher(topics.to(name, topics.END)) for name in names}
+
+    def tell(end: End) -> None:
+        for name in (topics.RECORDER, topics.OPERATOR):
+            puts[name](encode(end))
+        for name in roll.everyone:
+            if name != topics.RECORDER:
+                puts[name](b"")
+
+    return tell

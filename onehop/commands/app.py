@@ -29,6 +29,11 @@ class Driver(StrEnum):
     INLINE = "inline"
 
 
+class RosDistro(StrEnum):
+    HUMBLE = "humble"
+    JAZZY = "jazzy"
+
+
 class Clock(StrEnum):
     LOCKSTEP = "lockstep"
     REALTIME = "realtime"
@@ -38,6 +43,11 @@ class Preset(StrEnum):
     THESIS = "thesis"
     PHYSICAL = "physical"
     INDOOR = "indoor"
+
+
+class Router(StrEnum):
+    WORLD = "world"
+    EXTERNAL = "external"
 
 
 class FastFading(StrEnum):
@@ -106,6 +116,9 @@ def run(
     wait_s: Annotated[
         float, Option("--wait", help="How long for other hosts [s].", callback=within(numbers.WAIT))
     ] = 300.0,
+    router: Annotated[
+        Router, Option(help="Of --bus: the world, or one that runs there (zenohd).")
+    ] = Router.WORLD,
     record: Annotated[bool, Option("--record/--no-record", help="Write the log.")] = True,
     with_view: Annotated[
         bool, Option("--view/--no-view", help="Add to the log what Foxglove and Rerun show.")
@@ -120,6 +133,16 @@ def run(
         ),
     ] = None,
     browser: Browser = True,
+    ros2: Annotated[
+        bool, Option("--ros2", help="Let ROS 2 nodes see it, by rmw_zenoh (docs/ros.md).")
+    ] = False,
+    ros_router: Annotated[
+        str, Option(metavar="ENDPOINT", help="Router of the ROS 2 nodes.")
+    ] = "tcp/127.0.0.1:7447",
+    ros_domain: Annotated[
+        int, Option(envvar="ROS_DOMAIN_ID", help="Their domain.", callback=within(numbers.ROS_DOMAIN))
+    ] = 0,
+    ros_distro: Annotated[RosDistro, Option(help="Theirs; later ones are as jazzy.")] = RosDistro.JAZZY,
 ) -> None:
     """Run a mission: every robot a process on the bus, recorded.
 
@@ -128,14 +151,16 @@ def run(
     Example: onehop run scenarios/map1.toml --seed 7 --set team.size=4
     """
     from onehop.commands import run as command
+    from onehop.commands.ros2 import Ros2
 
     settings = [*settings, *command.clock_settings(None if clock is None else clock.value, speed)]
     places = (map_file, start, goal, out)
     wanted = (record, record and with_view, as_json)
-    hosts = command.Hosts(bus, keys, remote, mission, wait_s)
+    hosts = command.Hosts(bus, keys, remote, mission, wait_s, router.value)
+    nodes = Ros2(ros_router, ros_domain, ros_distro.value) if ros2 else None
     given = command.run(
         scenario, driver.value, settings, seed, *places, *wanted, program, hosts,
-        live=live, browser=browser,
+        live=live, browser=browser, ros2=nodes,
     )  # fmt: skip
     leave(given)
 

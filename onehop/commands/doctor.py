@@ -30,6 +30,7 @@ LIBRARIES = (
     "rich",
     "numba",
     "matplotlib",
+    "cryptography",
 )
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 DOCKER_TIMEOUT_S = 10.0

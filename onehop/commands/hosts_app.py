@@ -40,3 +40,19 @@ def keys(
     from onehop.commands import keys as command
 
     leave(command.keys(folder, robots, scenario, host, days, mission, missing, reissue, as_json))
+
+
+@app.command()
+def compose(
+    scenario: Annotated[Path, Argument(help="Scenario file (.toml).")],
+    out: Annotated[
+        Path | None, Option("-o", "--out", metavar="FILE", help="Where to write it (default: print it).")
+    ] = None,
+) -> None:
+    """The compose file of a mission: a container for each process, certificates made at the first start.
+
+    Example: onehop compose scenarios/map1.toml -o compose.yaml
+    """
+    from onehop.commands import compose as command
+
+    leave(command.compose(scenario, out))

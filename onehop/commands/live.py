@@ -67,10 +67,16 @@ class LivePage:
 
 
 @contextlib.contextmanager
-def live_page(address: str, browser: bool, folder: Path, words: Sequence[str]) -> Iterator[LivePage]:
-    """The page of a mission that is about to start. words: of its command, to run it again."""
+def live_page(
+    address: str, browser: bool, folder: Path, words: Sequence[str], is_paced: bool = True
+) -> Iterator[LivePage]:
+    """The page of a mission that is about to start.
+
+    words: of its command, to run it again. is_paced: whether it goes as fast as it is told, as one in
+    lock-step does.
+    """
     log = folder / LOG
-    hand = Hand(words)
+    hand = Hand(words, is_paced)
     source = Source(log, is_ours=True, older_ns=log.stat().st_mtime_ns if log.exists() else None)
     with LiveServer([source], parse_address(address), hand) as server:
         _tell(server.url, browser)

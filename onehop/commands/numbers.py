@@ -49,6 +49,9 @@ ROBOTS = Range(1, 300)
 DAYS = Range(1, 3650)
 """How long a certificate is good [days]."""
 
+ROS_DOMAIN = Range(0, 232)
+"""ROS_DOMAIN_ID."""
+
 WAIT = Range(1.0, 86_400.0)
 """How long a mission waits for processes on other hosts [s]."""
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from onehop.commands.output import emit_json, say, stdout, table
+from onehop.commands.ros2 import Ros2, bridge
 from onehop.contracts.errors import InputError
 from onehop.mission.placement import WAIT_S, Placement, on_hosts
 from onehop.mission.progress import Display
@@ -27,6 +28,7 @@ class Hosts:
     remote: str = ""
     mission: str = DEFAULT_MISSION
     wait_s: float = WAIT_S
+    router: str = "world"
 
 
 def run(
@@ -45,14 +47,17 @@ def run(
     hosts: Hosts | None = None,
     live: str | None = None,
     browser: bool = True,
+    ros2: Ros2 | None = None,
 ) -> int:
     """Run one mission; returns the exit status.
 
     program: of the team, in place of the scenario's. hosts: the bus of a mission on several hosts.
     live: where the live page is served (guard.parse_address). browser: open it, if there is a screen.
+    ros2: where ROS 2 nodes see it.
     """
-    if live is not None:
-        _require_what_is_shown(driver, record)
+    for option, is_given in (("--live", live is not None), ("--ros2", ros2 is not None)):
+        if is_given:
+            _require_what_is_shown(option, driver, record)
     if program is not None:
         settings = [*settings, f"team.program={program}"]
     bundle = scenario_file.load(
@@ -76,7 +81,10 @@ def run(
 
             places = (("--map", map_file), ("--start", start), ("--goal", goal))
             words = words_of(scenario, settings, bundle.scenario.seed, places)
-            shown = page.enter_context(live_page(live, browser, folder, words))
+            is_paced = not bundle.scenario.clock.is_realtime
+            shown = page.enter_context(live_page(live, browser, folder, words, is_paced))
+        if ros2 is not None:
+            page.enter_context(bridge(ros2, folder))
         with Display(bundle.scenario) as display:
             if driver == "inline":
                 from onehop.commands.inline_run import run_inline
@@ -115,15 +123,16 @@ def _placed(hosts: Hosts, driver: str, bundle: Bundle) -> Placement | None:
     if hosts.bus is None:
         raise InputError("--bus", "missing", "where the world is to listen, e.g. tls/10.0.0.1:7447")
     robots = bundle.scenario.team.robots
-    return on_hosts(hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s, robots)
+    external = hosts.router == "external"
+    return on_hosts(hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s, robots, external)
 
 
-def _require_what_is_shown(driver: str, record: bool) -> None:
-    """Raises InputError."""
+def _require_what_is_shown(option: str, driver: str, record: bool) -> None:
+    """Raises InputError for a mission that has no log while it runs."""
     if driver == "inline":
-        raise InputError("--live", "a mission in one process has no page", "--driver processes")
+        raise InputError(option, "a mission in one process is not watched", "--driver processes")
     if not record:
-        raise InputError("--live", "it shows the log as it is written", "leave out --no-record")
+        raise InputError(option, "it shows the log as it is written", "leave out --no-record")
 
 
 def clock_settings(clock: str | None, speed: float | None) -> list[str]:

@@ -27,7 +27,7 @@ from onehop.drivers.players import (
 )
 from onehop.maps.map_file import load_map
 from onehop.plugins import plugged_radio
-from onehop.programs.find import check, search_in
+from onehop.programs.find import check, outsiders, search_in
 from onehop.scenario.link_trace import link_trace
 from onehop.wire.audit import Audit
 from onehop.wire.codec import UNPACK_REFUSALS
@@ -56,7 +56,7 @@ class Divergence:
 class Report:
     """What a re-execution found. flaws: why the log is not all that was said (audit.py).
 
-    foreign: robots that were processes of somebody else's making: what they said is taken as it is.
+    foreign: robots of somebody else's making, or driven from outside: what they said is taken as it is.
     """
 
     ticks: int = 0
@@ -96,7 +96,7 @@ def replay(
     """
     original = log.bundle.scenario
     search_in(log.bundle.folder)
-    wanted, foreign = original.team.robots if robots is None else robots, original.commands
+    wanted, foreign = original.team.robots if robots is None else robots, outsiders(original)
     chosen = tuple(robot for robot in wanted if robot not in foreign)
     check(scenario or original, str(log.path), chosen)
     players: dict[str, Player] = {
@@ -110,7 +110,7 @@ def replay(
         radio_player = RealTimeRadioPlayer(radio) if in_real_time else RadioPlayer(radio)
         players[topics.RADIO_RECORD] = radio_player.play
         players[topics.TRUTH] = WorldPlayer(original, walls).play
-    report = Report(robots=chosen, foreign=tuple(sorted(foreign)))
+    report = Report(robots=chosen, foreign=foreign)
     audit = Audit(log)
     comparison = _Comparison(report, players, everything=parts and robots is None, torn=log.torn)
     try:

@@ -14,7 +14,6 @@ from onehop.contracts.errors import DecodeError
 from onehop.contracts.geometry import to_map
 from onehop.contracts.messages import (
     Action,
-    DeliveryStatus,
     Observation,
     Presence,
     RadioRecord,
@@ -24,7 +23,7 @@ from onehop.contracts.printable import printable
 from onehop.contracts.program_section import BUILT_IN
 from onehop.contracts.team import Status
 from onehop.live.now import now_in_words
-from onehop.live.story import Story
+from onehop.live.story import Lost, Story, lost_in
 from onehop.wire.log_reader import forged
 from onehop.wire.logged import TickMessage, decoded
 from onehop.wire.selection import one_of
@@ -43,17 +42,21 @@ MOST_VALUES = 6
 class Moment:
     """The messages of one tick of a log. truth: None where the log has none of that tick."""
 
-    def __init__(self, log: Log, tick: int, since: int, robot: int) -> None:
+    def __init__(self, log: Log, story: Story, tick: int, since: int, robot: int) -> None:
         """since: tick of the frame that was shown before. robot: whose scan is wanted, 0 for nobody."""
         self.truth: Truth | None = None
         self.actions: dict[int, Action] = {}
         self.scan: Observation | None = None
-        self.lost: list[tuple[int, int, str]] = []
+        self.lost: Lost = []
         first = max(since + 1, tick - LOST_TICKS, 0) if since < tick else tick
+        recent = story.recently_lost(first, tick)
         eye = topics.obs(robot)
         try:
-            for message in log.file.wire.select(one_of(topics.RADIO_RECORD), min(first, tick), tick):
-                self._take_lost(decoded(message))
+            if recent is None:
+                for message in log.file.wire.select(one_of(topics.RADIO_RECORD), first, tick):
+                    self._take_lost(decoded(message))
+            else:
+                self.lost = recent
             for message in log.file.wire.select(one_of(topics.TRUTH, "out/", eye), tick, tick):
                 self._take(message.key, decoded(message))
         except DecodeError as error:
@@ -61,10 +64,7 @@ class Moment:
 
     def _take_lost(self, record: object) -> None:
         if isinstance(record, RadioRecord):
-            for one in record.verdicts:
-                if one.status is not DeliveryStatus.DELIVERED and len(self.lost) < MOST_LOST:
-                    holder = one.path[-1] if one.path else one.source
-                    self.lost.append((holder, one.receiver, one.status.value))
+            self.lost += lost_in(record)
 
     def _take(self, key: str, value: TickMessage) -> None:
         if isinstance(value, Truth):
@@ -90,7 +90,7 @@ def frame(moment: Moment, story: Story) -> dict[str, Any]:
             for one in story.gone_at(truth.tick, present)
         ],
         "routes": list(_routes(moment.actions, present, story, truth.tick)),
-        "lost": [lost for lost in moment.lost if lost[0] in present and lost[1] in present],
+        "lost": [lost for lost in moment.lost if present.issuperset(lost[:2])][-MOST_LOST:],
         "cuts": [[list(cut.side_a), list(cut.side_b), cut.one_way] for cut in truth.cuts],
         "jams": [[jam.x, jam.y, jam.radius] for jam in truth.jams],
         "slots": list(_slots(truth, moment.actions, story)),

@@ -15,10 +15,12 @@ class Hand:
     """words: the command that has started the mission, by which it is started again.
 
     pace: the one in force; a mission goes as fast as it can until it is told otherwise.
+    is_paced: whether it heeds a pace, as one in lock-step does.
     """
 
-    def __init__(self, words: Sequence[str]) -> None:
+    def __init__(self, words: Sequence[str], is_paced: bool = True) -> None:
         self.words = tuple(words)
+        self.is_paced = is_paced
         self.pace = Pace(0.0, False, 0)
         self._running: Running | None = None
         self._one_at_a_time = threading.Lock()
@@ -53,6 +55,6 @@ class Hand:
 
     def set_pace(self, pace: Pace) -> None:
         running = self._running
-        if running is not None:
+        if running is not None and self.is_paced:
             self.pace = pace
             running.set_pace(pace)

@@ -66,9 +66,8 @@ def _weak_links(actions: Mapping[int, Action]) -> Iterator[str]:
         )  # fmt: skip
         yield f"{_robots(silent, True)} missed {its}."
     if weak:
-        its = "Its link is" if len(weak) == 1 else "Their links are"
-        hurry = "it hurries" if len(weak) == 1 else "they hurry"
-        yield f"{its} below the threshold: {hurry} ({_robots(weak)})."
+        its = "hurries: its link is" if len(weak) == 1 else "hurry: their links are"
+        yield f"{_robots(weak, True)} {its} below the threshold."
 
 
 def _modes(actions: Mapping[int, Action]) -> Iterator[str]:

@@ -9,6 +9,7 @@ from typing import Any
 
 from onehop.analysis.explanation import explain
 from onehop.analysis.explanation_text import explanation_text
+from onehop.analysis.growing_log import GrowingLog
 from onehop.analysis.log import Log
 from onehop.analysis.report.narrative import summary_sentence
 from onehop.contracts import topics
@@ -16,7 +17,6 @@ from onehop.contracts.errors import DecodeError, InputError, LogError
 from onehop.contracts.messages import Action, RadioRecord, Truth
 from onehop.contracts.printable import printable
 from onehop.live.frame import Moment, frame, scan
-from onehop.live.growing_log import GrowingLog
 from onehop.live.setting import setting
 from onehop.live.story import Story
 from onehop.mission.rendezvous import way_into
@@ -24,7 +24,7 @@ from onehop.wire.log_reader import forged
 from onehop.wire.logged import decoded
 from onehop.wire.selection import Selected, one_of
 
-LOOK_S = 1.0 / 30.0
+LOOK_S = 1.0 / 25.0
 """How often a log that is written is looked at [s]."""
 
 TICKS_AT_ONCE = 200
@@ -113,7 +113,7 @@ class Source:
         log, story = self.log, self.story
         if log is None or story is None or not 0 <= tick <= story.last_tick:
             return None
-        moment = Moment(log, tick, since, robot if robot in log.robots else 0)
+        moment = Moment(log, story, tick, since, robot if robot in log.robots else 0)
         if moment.truth is None:
             return None
         shown = frame(moment, story)

@@ -4,6 +4,8 @@ The same for a log and for a mission that runs. Nothing is forgotten, so what is
 little: notes, faults, departures and contacts as they come, numbers of each robot twice a second.
 """
 
+import math
+from collections import deque
 from collections.abc import Mapping
 from typing import Any, NamedTuple
 
@@ -12,10 +14,31 @@ from onehop.analysis.timeline import LastSeen, LeadershipLine
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Action, DeliveryStatus, LeadershipTerm, RadioRecord, Truth
+from onehop.contracts.program_section import BUILT_IN
 from onehop.contracts.scenario import Scenario
 
 SAMPLE_S = 0.5
 """Simulated time between two points of the charts [s]."""
+
+
+CHARTS = 4
+"""Numbers of each robot that are charted."""
+
+
+RECENT_TICKS = 100
+"""Ticks of which the lost messages are at hand: a page at the newest moment asks for no others."""
+
+Lost = list[tuple[int, int, str]]
+"""Messages that were lost in a tick: who held it last, who should have got it, why."""
+
+
+def lost_in(record: RadioRecord) -> Lost:
+    """The lost messages of a tick."""
+    return [
+        (one.path[-1] if one.path else one.source, one.receiver, one.status.value)
+        for one in record.verdicts
+        if one.status is not DeliveryStatus.DELIVERED
+    ]
 
 
 class Departure(NamedTuple):
@@ -40,7 +63,8 @@ class Story:
 
     samples: [tick, for each robot of the team None or x, y [m], throughput [kbit/s], SNR [dB],
     k_rho [1/s], error [m], each None if it has none]. routes: by robot, a new one whenever the way
-    changes.
+    changes. names: of the values that take the places of the last four where the built-in team drives
+    nobody; they come as programs show them first.
     """
 
     def __init__(self, scenario: Scenario) -> None:
@@ -53,6 +77,9 @@ class Story:
         self.departures: list[Departure] = []
         self.begun: list[FaultSection] = []
         self.samples: list[list[Any]] = []
+        self.names: list[str] = []
+        self._recent: deque[tuple[int, Lost]] = deque(maxlen=RECENT_TICKS)
+        self._has_team = any(scenario.program_of(robot)[0] == BUILT_IN for robot in self.robots)
         self.routes: dict[int, list[Route]] = {robot: [] for robot in self.robots}
         self._period_s = scenario.clock.period_ns / 1e9
         self._stride = max(1, round(SAMPLE_S / self._period_s))
@@ -113,6 +140,7 @@ class Story:
                 self.departures.append(Departure(truth.tick, one.robot, pose.x, pose.y, one.why))
 
     def _take_radio(self, record: RadioRecord) -> None:
+        self._recent.append((record.tick, lost_in(record)))
         for verdict in record.verdicts:
             if verdict.status is not DeliveryStatus.DELIVERED:
                 continue
@@ -130,6 +158,8 @@ class Story:
             return None
         place = [round(pose.x, 2), round(pose.y, 2)]
         action = actions.get(robot)
+        if action is not None and not self._has_team:
+            return [*place, *self._values(action)]
         status = None if action is None else action.status
         if status is None:
             return [*place, None, None, None, None]
@@ -140,6 +170,13 @@ class Story:
         shown = None if snr is None else round(snr, 1)
         return [*place, kbps, shown, round(status.k_rho, 3), round(status.error, 2)]
 
+    def _values(self, action: Action) -> list[float | None]:
+        """The first values that programs have shown, in the places of what a team shows."""
+        self.names += [name for name in action.values if name not in self.names]
+        shown = (action.values.get(name) for name in self.names[:CHARTS])
+        values = [None if one is None or not math.isfinite(one) else round(one, 3) for one in shown]
+        return values + [None] * (CHARTS - len(values))
+
     def events(self) -> list[NarrativeEvent]:
         """The report's narrative so far, in order of time."""
         state = (
@@ -149,6 +186,13 @@ class Story:
         if state != self._told:
             self._told, self._events = state, narrative(self)
         return self._events
+
+    def recently_lost(self, first: int, last: int) -> Lost | None:
+        """What was lost in the ticks first..last; None if that is not at hand any more."""
+        recent = list(self._recent)
+        if not recent or recent[0][0] > first or recent[-1][0] < last:
+            return None
+        return [lost for tick, in_tick in recent if first <= tick <= last for lost in in_tick]
 
     def gone_at(self, tick: int, present: set[int]) -> list[Departure]:
         """Who has left by a tick and is not there in it: the last departure of each."""

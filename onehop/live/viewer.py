@@ -28,10 +28,11 @@ from onehop.live.requests import (
     fault_of,
 )
 from onehop.live.source import Source
+from onehop.live.story import CHARTS
 from onehop.live.watchers import Watchers
 
-FRAME_S = 1.0 / 30.0
-"""Least time between two frames [s]: 30 a second look smooth, and the page moves robots in between."""
+FRAME_S = 1.0 / 25.0
+"""Least time between two frames [s]: 25 a second look smooth, since the page moves robots in between."""
 
 EVENTS_S = 0.25
 """Least time between two looks at the narrative [s]: a team in trouble notes something every tick."""
@@ -189,6 +190,7 @@ class Viewer:
             "yours": self._watchers.holder is self,
             "viewers": len(self._watchers),
             "holds": hand.holds,
+            "is_paced": hand.is_paced,
             "ticks_per_s": hand.pace.ticks_per_s,
             "paused": hand.pace.paused,
         }
@@ -213,6 +215,9 @@ class Viewer:
         story = self._source.story
         if story is None:
             return
+        names = [printable(name, 40) for name in story.names[:CHARTS]]
+        if names != self._sent.get("names", []):
+            self._sent["names"] = reply["names"] = names
         if len(story.samples) > self._samples:
             new = story.samples[self._samples : self._samples + MOST_SAMPLES]
             reply["samples"] = new

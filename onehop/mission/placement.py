@@ -24,7 +24,8 @@ class Placement:
 
     mission: prefix of its keys. listen, connect: endpoints, of the world and of everyone else here.
     keys: folder of certificates, None: passwords. remote: names of processes on other hosts, and wait_s
-    how long they may take to come [s].
+    how long they may take to come [s]. external: the router is a process of somebody else's (zenohd),
+    and the world its client.
     """
 
     mission: str
@@ -33,11 +34,13 @@ class Placement:
     keys: Path | None = None
     remote: tuple[str, ...] = ()
     wait_s: float = WAIT_S
+    external: bool = False
 
     def world_arguments(self) -> list[str]:
         """Options of the world's process."""
         patience = ["--start-s", f"{self.wait_s:g}"] if self.remote else []
-        return ["--listen", self.listen, *self._keys(), *patience]
+        bus = ["--connect", self.connect] if self.external else ["--listen", self.listen]
+        return [*bus, *self._keys(), *patience]
 
     def client_arguments(self) -> list[str]:
         """Options of every other process."""
@@ -64,10 +67,12 @@ def on_hosts(
     mission: str,
     wait_s: float,
     robots: Sequence[int],
+    external: bool = False,
 ) -> Placement:
     """A mission on a bus that other hosts reach, as options of the command line say it.
 
-    bus: where the world listens. remote: ids of robots, and "radio", with commas. Raises InputError.
+    bus: where the world listens, or the router that is there. remote: ids of robots, and "radio", with
+    commas. Raises InputError.
     """
     option = f"--bus {bus}"
     parted = re.fullmatch(r"(tls|tcp)/(.+):(\d+)", bus)
@@ -83,12 +88,12 @@ def on_hosts(
     host, port = parted[2].strip("[]"), parted[3]
     everywhere = _is_everywhere(host)
     world = certificate(keys, topics.WORLD)
-    if not everywhere and host not in world.hosts:
+    if not (everywhere or external) and host not in world.hosts:
         good = f"for {', '.join(world.hosts)}"
         remedy = f"onehop keys {keys} --reissue world --host {host}"
         raise InputError(option, f"the world's certificate is {good}", remedy)
     connect = f"{TLS}127.0.0.1:{port}" if everywhere else bus
-    return Placement(mission, bus, connect, keys.absolute(), _names(remote, robots), wait_s)
+    return Placement(mission, bus, connect, keys.absolute(), _names(remote, robots), wait_s, external)
 
 
 def _is_everywhere(host: str) -> bool:

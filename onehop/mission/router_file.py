@@ -1,4 +1,8 @@
-"""The configuration of a router of its own, zenohd, with the rights that the world's router gives."""
+"""The configuration of a router of its own, zenohd, with the rights that the world's router gives.
+
+Its links are not of low latency: there the thread that hears from one end writes to the other, and when
+it has to wait all that this thread serves waits too.
+"""
 
 import json
 from collections.abc import Sequence
@@ -40,7 +44,6 @@ def _settings(certificate: Certificate, mission: str, names: Sequence[str]) -> d
         "mode": "router",
         "listen/endpoints": ["tls/[::]:7447"],
         "adminspace/enabled": False,
-        "transport/unicast/lowlatency": True,
         "transport/link/tx/lease": LEASE_MS,
         "access_control": access_control(mission, guests, "cert_common_names", session_id(topics.WORLD)),
     }

@@ -9,7 +9,7 @@ import signal
 import sys
 import time
 import traceback
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 from onehop.contracts import topics
@@ -18,6 +18,7 @@ from onehop.node import lifeline
 from onehop.node.bus import Bus, open_certified_router, open_client, open_router
 from onehop.node.identity import TLS, Certificate, Identity
 from onehop.node.own_settings import keep_to_own_settings
+from onehop.node.reachability import why_not
 
 DEFAULT_MISSION = "onehop"
 """Prefix of a mission's keys where nobody gives one: several hosts need not be told."""
@@ -31,6 +32,9 @@ CREDENTIALS_VARIABLE = "ONEHOP_CREDENTIALS"
 
 BRIEFING_TIMEOUT_S = 30.0
 """How long the world may take to answer the question for a briefing [s]."""
+
+FIRST_TRY_MS = 10_000
+"""How long a process that people have started looks for the bus before it says what is wrong [ms]."""
 
 WORLD_IS_GONE = 3
 """Exit status of a process that ends because the world has gone."""
@@ -99,11 +103,34 @@ def connect(options: argparse.Namespace, name: str) -> Bus:
     identity: Identity | None = os.environ.pop(PASSWORD_VARIABLE, None)
     if require_keys_for_tls(options.connect, options.keys):
         identity = certificate(options.keys, name)
-    return open_client(options.mission, options.connect, name, identity)
+    if options.lifeline is not None:
+        return open_client(options.mission, options.connect, name, identity)
+    with _ended_by_ctrl_c():
+        try:
+            return open_client(options.mission, options.connect, name, identity, FIRST_TRY_MS)
+        except MissionError:
+            why = why_not(options.connect, identity)
+            _say(f"{name}: no bus at {options.connect} yet: {why}\n")
+        return open_client(options.mission, options.connect, name, identity)
 
 
-def listen(options: argparse.Namespace, names: Iterable[str]) -> Bus:
-    """Open the world's session, the router's. names: who may come, if they have certificates."""
+@contextlib.contextmanager
+def _ended_by_ctrl_c() -> Iterator[None]:
+    """Let Ctrl-C end this process outright meanwhile: Zenoh does not look at Python's signals."""
+    before = signal.signal(signal.SIGINT, signal.SIG_DFL)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def host(options: argparse.Namespace, names: Iterable[str]) -> Bus:
+    """Open the world's session, the router's or that of a router's client.
+
+    names: who may come, if they have certificates.
+    """
+    if options.connect is not None:
+        return connect(options, topics.WORLD)
     if require_keys_for_tls(options.listen, options.keys):
         own = certificate(options.keys, topics.WORLD)
         return open_certified_router(options.mission, options.listen, own, names)

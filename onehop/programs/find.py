@@ -76,14 +76,37 @@ def check(scenario: Scenario, origin: str, robots: Iterable[int] | None = None) 
         parameters_of(program, table, origin, key)
 
 
+def outsiders(scenario: Scenario) -> tuple[int, ...]:
+    """Robots of which nobody else can tell what they do next, ids ascending.
+
+    Those that are processes of somebody else's making, and those whose program goes by more than its
+    percepts. Raises InputError for a program that is not there.
+    """
+    closed = {BUILT_IN: True}
+    outside = []
+    for robot in scenario.team.robots:
+        name, _ = scenario.program_of(robot)
+        if robot not in scenario.commands and name not in closed:
+            closed[name] = find(name).reproducible
+        if robot in scenario.commands or not closed[name]:
+            outside.append(robot)
+    return tuple(outside)
+
+
 def require_programs(scenario: Scenario, origin: str) -> None:
     """See that a mission can be run in one process. origin: see `check`. Raises ScenarioError."""
     if scenario.clock.is_realtime:
         what = "one process has no real time: in it everyone waits for everyone"
         remedy = "onehop run with --driver processes, or --set clock.mode='\"lockstep\"'"
         raise ScenarioError(f"{origin}: clock.mode", what, remedy)
-    for number, one in enumerate(scenario.robots):
-        if one.command:
-            what = f"robot {one.id} is a process of its own, and has no program to run in this one"
-            remedy = "onehop run with --driver processes, or --set robots=[] for the team's program"
-            raise ScenarioError(f"{origin}: robots[{number}].command", what, remedy)
+    for robot in outsiders(scenario):
+        number = next((n for n, one in enumerate(scenario.robots) if one.id == robot), None)
+        if robot in scenario.commands:
+            key = f"robots[{number}].command"
+            what = f"robot {robot} is a process of its own, and has no program to run in this one"
+        else:
+            own = number is not None and scenario.robots[number].program
+            key = f"robots[{number}].program" if own else "team.program"
+            what = f"robot {robot} is driven from outside, and nobody there keeps up with one process"
+        remedy = "onehop run with --driver processes, or --set robots=[] for the team's program"
+        raise ScenarioError(f"{origin}: {key}", what, remedy)

@@ -121,6 +121,13 @@ def proven(path: Path) -> LogFile:
     return log
 
 
+def contents(out: Path) -> bytes:
+    """All that a mission has written: its files, and what is compressed in its log."""
+    files = [path.read_bytes() for path in sorted(out.rglob("*")) if path.is_file()]
+    messages = [data for tick in LogFile(out / "mission.mcap").ticks() for _, data in tick.messages]
+    return b"\n".join([*files, *messages])
+
+
 def gone(pids: list[int]) -> bool:
     """Whether all of these processes have ended, or do so in a few seconds."""
     deadline = time.monotonic() + 15.0

@@ -4,10 +4,13 @@ On loopback only. What is the same with passwords is in test_bus.py and test_hos
 """
 
 import contextlib
+import dataclasses
 import datetime
 import shutil
 import socket
+import threading
 import time
+from argparse import Namespace
 from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
@@ -22,6 +25,7 @@ from onehop.node import startup
 from onehop.node.bus import GONE, Bus, open_certified_router, open_client
 from onehop.node.identity import session_id
 from onehop.node.parts import PART_BYTES
+from onehop.node.reachability import why_not
 from tests.live.hosts import made_keys, stranger, tls_endpoint
 
 pytestmark = pytest.mark.live
@@ -211,3 +215,33 @@ def test_silent_connections_keep_nobody_out(house: House) -> None:
             stack.enter_context(socket.create_connection((host, int(port)), timeout=SOON_S))
         with house.client("robot-2", timeout_ms=10_000):
             house.still_works()
+
+
+def test_why_a_bus_is_not_reached_can_be_told(house: House, tmp_path: Path) -> None:
+    own = startup.certificate(house.keys, "robot-2")
+    foreign = startup.certificate(made_keys(tmp_path / "foreign", TEAM), "robot-2")
+    shutil.copytree(foreign.folder, tmp_path / "mixed" / "robot-2")
+    shutil.copy(own.folder / "ca.pem", tmp_path / "mixed" / "robot-2")
+    mixed = dataclasses.replace(foreign, folder=tmp_path / "mixed" / "robot-2")
+    assert why_not(house.endpoint, own).startswith("it is reached, and takes no session")
+    unknown = "the router's certificate is refused here: unable to get local issuer certificate"
+    assert why_not(house.endpoint, foreign) == unknown
+    assert why_not(house.endpoint, mixed) == "this certificate is refused there: tlsv1_alert_unknown_ca"
+    assert why_not(tls_endpoint(), own) == "connection refused"
+
+
+def test_who_was_started_by_hand_says_what_is_wrong_and_goes_on(
+    keys: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(startup, "FIRST_TRY_MS", 300)
+    endpoint = tls_endpoint()
+    options = Namespace(mission="m", connect=endpoint, keys=keys, lifeline=None)
+    own = startup.certificate(keys, topics.WORLD)
+    with ExitStack() as stack:
+        opening = threading.Timer(
+            1.0, lambda: stack.enter_context(open_certified_router("m", endpoint, own, ["radio"]))
+        )
+        opening.start()
+        with startup.connect(options, "radio"):
+            opening.join()
+    assert capsys.readouterr().err == f"radio: no bus at {endpoint} yet: connection refused\n"

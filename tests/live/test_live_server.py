@@ -150,6 +150,20 @@ def test_what_is_done_by_hand_is_repeated_by_the_command_that_the_page_shows(tmp
     assert log_of(field(tmp_path, *changes), tmp_path / "again.mcap") == summary["digest"] == digest(log)
 
 
+def test_a_mission_that_is_paused_can_be_ended(tmp_path: Path) -> None:
+    scenario = tmp_path / "field.toml"
+    scenario.write_text(FIELD)
+    with shown_mission(tmp_path, scenario) as shown, PageClient(shown.url) as page:
+        page.until(lambda one: one.tick >= 3)
+        page.say("pace", ticks_per_s=0, paused=True, steps=0)
+        page.until(lambda one: one.news["hand"]["paused"])
+        os.kill(shown.child.pid, signal.SIGINT)
+        assert shown.finish()[0] == 130
+    summary = proven(tmp_path / "out" / "mission.mcap").summary
+    assert summary is not None
+    assert summary["reason"] == "stopped by the operator"
+
+
 def test_a_mission_that_nobody_watches_ends_as_without_a_page(tmp_path: Path) -> None:
     scenario = tmp_path / "field.toml"
     scenario.write_text(FIELD)

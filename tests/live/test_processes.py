@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from onehop.wire.log_reader import digest
-from tests.live.mission import DEADLINE_S, Mission, gone, proven
+from tests.live.mission import DEADLINE_S, Mission, contents, gone, proven
 from tests.onehop.scenes import field, log_of
 
 pytestmark = pytest.mark.live
@@ -37,6 +37,26 @@ def test_processes_log_the_same_bytes_as_one_process(tmp_path: Path, settings: t
     names = [process["name"] for process in summary["processes"]]
     assert names[:7] == ["world", "radio", "recorder", "robot-1", "robot-2", "robot-3", "robot-4"]
     assert gone([process["pid"] for process in summary["processes"]])
+
+
+def test_a_password_is_in_the_environment_of_its_process_alone(mission: Mission) -> None:
+    """Not on a command line, not in what the mission writes, not with another process but the world."""
+    mission.await_ticks()
+    children = mission.children()
+    environments = {name: Path(f"/proc/{pid}/environ").read_text() for name, pid in children.items()}
+    words = environments["world_server"].split("ONEHOP_CREDENTIALS=")[1].split("\0")[0].split()
+    passwords = dict(word.split(":") for word in words)
+    assert len(set(passwords.values())) == 8
+    for name, pid in children.items():
+        own = name.removeprefix("onehop.").removesuffix("_proxy").replace("_agent ", "-")
+        seen = [user for user, word in passwords.items() if word in environments[name]]
+        assert seen == (list(passwords) if name == "world_server" else [own])
+        command = Path(f"/proc/{pid}/cmdline").read_text()
+        assert not any(word in command for word in passwords.values())
+        assert Path(f"/proc/{pid}/environ").stat().st_mode & 0o077 == 0
+    mission.child.send_signal(signal.SIGINT)
+    mission.child.communicate(timeout=DEADLINE_S)
+    assert not any(word.encode() in contents(mission.out) for word in passwords.values())
 
 
 def test_two_missions_side_by_side_do_not_disturb_each_other(tmp_path: Path) -> None:

@@ -16,6 +16,8 @@ from onehop.wire.log_reader import LogFile, digest
 from tests.onehop.command_line import in_shell, onehop
 from tests.onehop.scenes import FIELD, field, log_of
 
+MAP1 = Path(__file__).parents[2] / "scenarios" / "map1.toml"
+
 
 @pytest.fixture(scope="module")
 def recorded(tmp_path_factory: pytest.TempPathFactory) -> Path:
@@ -43,11 +45,18 @@ def test_elect_gives_leader_shape_and_slots_as_json() -> None:
         ("run", "nowhere.toml"),
         ("run", "nowhere.toml", "--driver", "magic"),
         ("replay", "nowhere.mcap"),
+        ("live", "nowhere.mcap"),
+        ("live", "a.mcap", "b.mcap", "c.mcap"),
+        ("run", "nowhere.toml", "--live", "--driver", "inline"),
+        ("run", "nowhere.toml", "--live", "--no-record"),
+        ("run", str(MAP1), "--live", "127.0.0.1:x", "--out", "{folder}"),
         ("bogus",),
     ],
 )
-def test_bad_input_is_one_line_on_stderr_and_status_2(arguments: tuple[str, ...]) -> None:
-    answer = onehop(*arguments)
+def test_bad_input_is_one_line_on_stderr_and_status_2(
+    arguments: tuple[str, ...], tmp_path: Path
+) -> None:
+    answer = onehop(*(word.format(folder=tmp_path) for word in arguments))
     assert answer.returncode == 2
     assert answer.stdout == ""
     assert answer.stderr.startswith("onehop: ")
@@ -62,7 +71,7 @@ def test_without_a_command_the_help_comes_and_status_2() -> None:
 
 
 @pytest.mark.parametrize(
-    "command", ["run", "replay", "elect", "link", "saturate", "plan", "chaos", "sweep", "doctor"]
+    "command", ["run", "live", "replay", "elect", "link", "saturate", "plan", "chaos", "sweep", "doctor"]
 )
 def test_help_has_an_example(command: str) -> None:
     answer = onehop(command, "--help")

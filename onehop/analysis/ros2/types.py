@@ -34,8 +34,9 @@ float64 error_m
 @cache
 def typestore() -> Any:
     """rosbags' types with our own. Raises InputError when rosbags is not installed."""
-    if importlib.util.find_spec("rosbags") is None:
-        raise InputError("--to ros2", "rosbags is not installed", "pip install 'onehop[ros2]'")
+    for library in ("rosbags", "xxhash"):
+        if importlib.util.find_spec(library) is None:
+            raise InputError("ROS 2", f"{library} is not installed", "pip install 'onehop[ros2]'")
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS2_JAZZY)

@@ -84,6 +84,7 @@ export class Cards {
     put(card.role, role);
     card.role.title = role;
     put(card.badge, robot.state.join(", "));
+    card.card.setAttribute("aria-description", `at ${robot.x.toFixed(1)}, ${robot.y.toFixed(1)} m`);
     const follows = status && !leads && status.throughput !== null && status.throughput >= 0;
     card.meter.style.visibility = follows ? "visible" : "hidden";
     if (follows) {

@@ -1,6 +1,6 @@
 // Four strips of numbers over time, one line a robot. Drawn anew only when there is something new.
 
-import { colours, el, fit, seconds } from "./dom.js";
+import { colours, el, fit, put, seconds, sizeOf } from "./dom.js";
 
 const KINDS = [
   { name: "throughput", unit: "kbit/s", place: 2, hint: "measured on each command; dashed: threshold" },
@@ -23,15 +23,28 @@ export class Charts {
     this.panels = KINDS.map((kind) => {
       const canvas = el("canvas", { role: "img", "aria-label": `${kind.name} of each robot over time` });
       const cursor = el("div", { class: "cursor" });
-      const title = el("h3", { title: kind.hint }, `${kind.name} `, el("span", { class: "quiet" }, kind.unit));
+      const name = el("b", {}, kind.name), unit = el("span", { class: "quiet" }, kind.unit);
+      const title = el("h3", { title: kind.hint }, name, " ", unit);
       canvas.addEventListener("pointerdown", (event) => seek(this.timeAt(canvas, event)));
-      return { kind, canvas, cursor, element: el("div", { class: "chart" }, title, canvas, cursor) };
+      return { kind, canvas, cursor, name, unit, element: el("div", { class: "chart" }, title, canvas, cursor) };
     });
     this.element = el("div", { class: "charts" }, ...this.panels.map((panel) => panel.element));
   }
 
   get end() {
     return this.samples.length ? Math.max(10, this.samples[this.samples.length - 1][0] * this.period) : 10;
+  }
+
+  /** Chart what programs show of themselves instead of what a team does. */
+  rename(names) {
+    this.panels.forEach((panel, number) => {
+      panel.kind = { name: names[number] || "", unit: "", place: KINDS[number].place };
+      put(panel.name, panel.kind.name);
+      put(panel.unit, "");
+      panel.name.parentElement.title = "";
+      panel.element.hidden = !names[number];
+    });
+    this.isDirty = true;
   }
 
   timeAt(canvas, event) {
@@ -54,15 +67,16 @@ export class Charts {
       this.isDirty = false;
     }
     for (const { canvas, cursor } of this.panels) {
-      cursor.style.left = `${LEFT + (Math.min(now, this.end) / this.end) * (canvas.clientWidth - LEFT - 4)}px`;
+      const at = LEFT + (Math.min(now, this.end) / this.end) * (sizeOf(canvas).width - LEFT - 4);
+      cursor.style.transform = `translateX(${at.toFixed(1)}px)`;
     }
   }
 
   drawOne({ kind, canvas }, palette) {
     const pen = canvas.getContext("2d");
-    const scale = canvas.width / Math.max(1, canvas.clientWidth);
+    const { width, height } = sizeOf(canvas);
+    const scale = canvas.width / Math.max(1, width);
     pen.setTransform(scale, 0, 0, scale, 0, 0);
-    const width = canvas.clientWidth, height = canvas.clientHeight;
     pen.clearRect(0, 0, width, height);
     const step = Math.max(1, Math.floor(this.samples.length / Math.max(60, width)));
     let low = Infinity, high = -Infinity;
@@ -74,7 +88,7 @@ export class Charts {
         high = Math.max(high, value);
       }
     }
-    if (kind.name !== "SNR") low = 0;
+    if (kind.name !== "SNR") low = Math.min(low, 0);
     if (!(high > low)) [low, high] = [Math.min(low, 0) || 0, (Number.isFinite(high) ? high : 0) + 1];
     const x = (time) => LEFT + (time / this.end) * (width - LEFT - 4);
     const y = (value) => height - BOTTOM - ((value - low) / (high - low)) * (height - BOTTOM - 6);

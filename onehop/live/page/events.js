@@ -20,7 +20,13 @@ export class Events {
     this.events = this.events.slice(0, from).concat(
       events.map(([at, weight, text, robot]) => ({ at, weight, text, robot })),
     );
-    this.fill(isNew ? from : Infinity);
+    this.fill(isNew ? from : Infinity, this.first ? 0 : from);
+  }
+
+  /** Everything comes again. */
+  clear() {
+    this.events = [];
+    this.fill(Infinity);
   }
 
   /** Mark a moment that is no event of the mission. */
@@ -29,11 +35,13 @@ export class Events {
     this.fill(Infinity);
   }
 
-  fill(freshFrom) {
+  /** Rows before `kept` stay as they are: a team in trouble has hundreds. */
+  fill(freshFrom, kept = 0) {
     const isAtEnd = this.element.scrollTop + this.element.clientHeight > this.element.scrollHeight - 30;
     const told = [...this.events];
     if (this.first) told.splice(told.filter((event) => event.at <= this.first.at).length, 0, this.first);
-    this.rows = told.map((event, number) => {
+    const rows = told.slice(kept).map((event, place) => {
+      const number = kept + place;
       const button = el(
         "button",
         { type: "button", class: `w${event.weight}${event === this.first ? " first" : ""}`, onclick: () => this.go(event) },
@@ -46,7 +54,9 @@ export class Events {
       }
       return { event, button };
     });
-    this.element.replaceChildren(...this.rows.map(({ button }) => el("li", {}, button)));
+    for (const { button } of this.rows.slice(kept)) button.parentElement.remove();
+    this.rows = this.rows.slice(0, kept).concat(rows);
+    this.element.append(...rows.map(({ button }) => el("li", {}, button)));
     if (isAtEnd) this.element.scrollTop = this.element.scrollHeight;
     this.shown = -1;
   }
@@ -55,8 +65,11 @@ export class Events {
   show(now) {
     const before = this.rows.filter(({ event }) => event.at <= now + 1e-6).length;
     if (before === this.shown) return;
+    this.rows.forEach(({ button }, number) => {
+      const isLater = number >= before;
+      if (button.classList.contains("later") !== isLater) button.classList.toggle("later", isLater);
+    });
     this.shown = before;
-    this.rows.forEach(({ button }, number) => button.classList.toggle("later", number >= before));
     const row = this.rows[before - 1]?.button.parentElement;
     if (row && before < this.rows.length) this.element.scrollTop = row.offsetTop - this.element.clientHeight / 2;
     else this.element.scrollTop = this.element.scrollHeight;

@@ -34,10 +34,16 @@ export class Feed {
     };
   }
 
-  /** Ask for a frame unless one has been asked for. tick: -1 for the newest. */
+  /**
+   * Ask for a frame unless one has been asked for. tick: -1 for the newest.
+   * What was asked for and comes only when there is something new gives way to another moment.
+   */
   want(tick, since, robot) {
-    if (this.asked) return;
+    const waits = this.askedTick === -1 || this.askedTick === this.askedSince;
+    if (this.asked && !(waits && tick !== this.askedTick)) return;
     this.asked = this.say({ kind: "want", tick, since, robot });
+    this.askedTick = tick;
+    this.askedSince = since;
   }
 
   say(request) {

@@ -1,6 +1,6 @@
 // The page: one view a log, one time for all of them, and the buttons.
 
-import { byId, colours, el, fit, put, seconds } from "./dom.js";
+import { byId, el, fit, put, seconds } from "./dom.js";
 import { Playback, SPEEDS } from "./playback.js";
 import { View } from "./view.js";
 
@@ -58,7 +58,9 @@ function changed(view) {
   }
   if (view.isFresh && state.told) {
     view.isFresh = false;
-    playback.isNow = Boolean(hand) || state.state === "running" || state.state === "starting";
+    const at = Number.parseFloat(new URLSearchParams(location.search).get("at") ?? "");
+    if (at >= 0) playback.open(at);
+    else playback.isNow = Boolean(hand) || state.state === "running" || state.state === "starting";
   }
   if (view.difference !== undefined && view.difference !== difference) {
     difference = view.difference;
@@ -77,7 +79,7 @@ const period = () => views[0].period || 0.05;
 const end = () => Math.max(...views.map((view) => view.end));
 const isMission = () => Boolean(views[0].hand);
 /** Whether the buttons of time are those of the mission, or of what is shown of it. */
-const holdsMission = () => playback.isNow && isMission() && views[0].hand.holds;
+const holdsMission = () => playback.isNow && isMission() && views[0].hand.holds && views[0].hand.is_paced;
 
 function seek(time) {
   playback.seek(time, end());
@@ -116,11 +118,13 @@ function pause() {
   else if (playback.isNow) {
     playback.isPlaying = true;
     seek(0);
-  } else {
-    if (!playback.isPlaying && playback.time >= end() - period()) playback.time = 0;
-    playback.isPlaying = !playback.isPlaying;
-  }
+  } else if (isAtEnd()) {
+    playback.isPlaying = true;
+    seek(0);
+  } else playback.isPlaying = !playback.isPlaying;
 }
+
+const isAtEnd = () => !playback.isNow && playback.time >= end() - period() / 2;
 
 function step() {
   if (holdsMission()) setPace(true, views[0].hand.paused ? 1 : 0);
@@ -212,7 +216,7 @@ function showTime() {
   showState(view);
   const mission = holdsMission();
   const paused = mission ? view.hand.paused : !playback.isPlaying;
-  put(byId("pause"), playback.isNow && !mission ? "Play it again" : paused ? "Go on" : "Pause");
+  put(byId("pause"), (playback.isNow && !mission) || isAtEnd() ? "Play it again" : paused ? "Go on" : "Pause");
   byId("step").disabled = byId("slower").disabled = byId("faster").disabled = playback.isNow && !mission;
   const atPace = mission && view.hand.ticks_per_s > 0 ? view.hand.ticks_per_s * period() : 0;
   put(byId("speed"), mission ? (atPace ? `${+atPace.toFixed(2)}\u00d7` : "full speed") : `${playback.factor}\u00d7`);
@@ -249,11 +253,11 @@ const differs = () => (difference ? difference.words : "");
 /** Events on the slider, and where two logs begin to differ. */
 function drawMarks(last) {
   const canvas = byId("marks");
-  const state = `${last} ${views.map((view) => `${view.events.rows.length}`)} ${difference?.at} ${colours().bad}`;
+  const { palette } = views[0];
+  const state = `${last} ${views.map((view) => `${view.events.rows.length}`)} ${difference?.at} ${palette.bad}`;
   if (!fit(canvas) && state === marksOf) return;
   marksOf = state;
   const pen = canvas.getContext("2d");
-  const palette = colours();
   pen.clearRect(0, 0, canvas.width, canvas.height);
   const whole = Math.max(1, last) * period();
   for (const view of views) {

@@ -24,6 +24,12 @@ export class Playback {
     this.time = Math.min(end, this.time + passed * this.factor);
   }
 
+  /** Begin at a moment, and stay there. */
+  open(time) {
+    this.isNow = this.isPlaying = false;
+    this.time = time;
+  }
+
   seek(time, end) {
     this.isNow = false;
     this.time = Math.min(end, Math.max(0, time));

@@ -2,6 +2,7 @@
 
 const FLASH_MS = 600, MOST_FLASHES = 80, MANY = 12;
 const TRAIL_SAMPLES = 80;
+const FAR = 6; // pixels a metre: below it robots that keep their distance would cover each other
 
 /** Everything that moves. scene: {frame, places, setting, palette, place, scale, chosen, flashes, samples}. */
 export function drawTeam(pen, scene) {
@@ -200,7 +201,8 @@ function drawRobot(pen, { places, place, scale, setting, palette, chosen }, robo
   const own = setting.robots.find((one) => one.id === robot.id);
   if (!at || !own) return;
   const [x, y] = place(at.x, at.y);
-  const radius = Math.min(15, Math.max(setting.robots.length > 12 ? 6 : 9, own.radius * scale));
+  const least = setting.robots.length > MANY || scale < FAR ? 6 : 9;
+  const radius = Math.min(15, Math.max(least, own.radius * scale));
   const dx = Math.cos(at.heading), dy = -Math.sin(at.heading);
   pen.fillStyle = own.colour;
   pen.strokeStyle = palette.panel;

@@ -4,7 +4,7 @@ import { Again } from "./again.js";
 import { Camera } from "./camera.js";
 import { Cards } from "./cards.js";
 import { Charts } from "./charts.js";
-import { colours, el, fit, put } from "./dom.js";
+import { colours, el, fit, put, sizeOf } from "./dom.js";
 import { Events } from "./events.js";
 import { Feed } from "./feed.js";
 import { drawGround, filledPicture } from "./ground.js";
@@ -95,7 +95,7 @@ export class View {
     this.frame = this.before = null;
     this.charts.samples = [];
     this.charts.isDirty = true;
-    this.events.events = [];
+    this.events.clear();
   }
 
   takeNews(news) {
@@ -113,6 +113,7 @@ export class View {
     if (news.hand) this.hand = news.hand;
     if (news.difference !== undefined) this.difference = news.difference;
     if (news.again) this.again.show(news.again);
+    if (news.names) this.charts.rename(news.names);
     if (news.samples) this.charts.add(news.samples);
     if (news.events) {
       this.events.take(news.events);
@@ -192,12 +193,13 @@ export class View {
   draw(now) {
     fit(this.canvas);
     const pen = this.canvas.getContext("2d");
-    const scale = this.canvas.width / Math.max(1, this.canvas.clientWidth);
+    const { width, height } = sizeOf(this.canvas);
+    const scale = this.canvas.width / Math.max(1, width);
     pen.setTransform(scale, 0, 0, scale, 0, 0);
-    pen.clearRect(0, 0, this.canvas.clientWidth, this.canvas.clientHeight);
+    pen.clearRect(0, 0, width, height);
     if (!this.setting) return;
     if (this.frame) this.movePlaces(now);
-    this.camera.follow([...this.places.values()], this.canvas.clientWidth, this.canvas.clientHeight);
+    this.camera.follow([...this.places.values()], width, height);
     const place = (x, y) => this.camera.toScreen(x, y);
     drawGround(pen, this.setting, this.picture, place, this.camera.scale, this.palette);
     if (this.frame) {
@@ -208,7 +210,7 @@ export class View {
       });
     }
     this.tools.draw(pen, this.palette);
-    if (this.camera.mode !== "map") this.drawOverview(pen);
+    if (this.camera.mode !== "map") this.drawOverview(pen, width, height);
     this.charts.draw(this.time);
     if (now >= this.cardsDue) this.showRest(now);
   }
@@ -228,11 +230,11 @@ export class View {
   }
 
   /** The whole ground small in a corner, with what is on the screen as a frame. */
-  drawOverview(pen) {
+  drawOverview(pen, width, height) {
     const [x0, y0, x1, y1] = this.setting.bounds;
     const wide = x1 - x0, high = y1 - y0;
-    const scale = Math.min(150 / wide, 150 / high, (0.34 * this.canvas.clientHeight) / high);
-    const left = this.canvas.clientWidth - wide * scale - 10, top = this.canvas.clientHeight - high * scale - 10;
+    const scale = Math.min(150 / wide, 150 / high, (0.34 * height) / high);
+    const left = width - wide * scale - 10, top = height - high * scale - 10;
     const place = (x, y) => [left + (x - x0) * scale, top + (y1 - y) * scale];
     pen.save();
     pen.fillStyle = this.palette.panel;
@@ -251,7 +253,7 @@ export class View {
       pen.fill();
     }
     const [ax, ay] = place(...this.camera.toGround(0, 0));
-    const [bx, by] = place(...this.camera.toGround(this.canvas.clientWidth, this.canvas.clientHeight));
+    const [bx, by] = place(...this.camera.toGround(width, height));
     pen.beginPath();
     pen.rect(left - 3, top - 3, wide * scale + 6, high * scale + 6);
     pen.clip();

@@ -40,7 +40,7 @@ def test_links_that_are_weak_or_silent_are_told_apart() -> None:
     said = Team().said({}, {2: 0.0, 3: 300e3})
     assert said[1:] == [
         "Robot 2 missed its leader's last command: it hurries.",
-        "Its link is below the threshold: it hurries (robot 3).",
+        "Robot 3 hurries: its link is below the threshold.",
     ]
     assert Team().said({}, {2: 0.0, 3: 0.0})[1] == (
         "Robots 2 3 missed their leader's last command: they hurry."

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 
+from onehop.analysis.growing_log import GrowingLog
 from onehop.analysis.log import open_log
 from onehop.analysis.report.narrative import narrative
 from onehop.analysis.report.report_data import gather
 from onehop.contracts.errors import LogError
 from onehop.contracts.fault_section import FaultSection
 from onehop.live.frame import LOST_TICKS
-from onehop.live.growing_log import GrowingLog
 from onehop.live.source import Source
 from tests.onehop.analysis.conftest import (
     HELD,
@@ -134,6 +134,10 @@ def test_lost_messages_are_those_since_the_frame_before_but_none_of_long_ago(par
         assert len(shown["lost"]) == len([one for one in lost if first < one <= tick])
         assert shown["cuts"] == [[[4], [1, 2, 3], False]]
     assert all(4 in one[:2] for one in shown["lost"])
+    for tick in {one for one in lost if 40 <= one <= 90}:
+        after = parted.frame(tick + 1, tick, 0)
+        assert after is not None
+        assert len(after["lost"]) == lost.count(tick + 1)
 
 
 def test_a_torn_log_says_so_and_shows_what_there_is(

@@ -1,0 +1,43 @@
+"""`python -m onehop.ros2 LOG`: publish a log to ROS 2 nodes, while it is written or afterwards."""
+
+import argparse
+import os
+import sys
+import threading
+from pathlib import Path
+
+from onehop.analysis.ros2.types import typestore
+from onehop.node import startup
+from onehop.ros2.bridge import Bridge
+from onehop.ros2.node import DEFAULT_ENDPOINT, RosNode, open_session
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python -m onehop.ros2", description=__doc__)
+    parser.add_argument("log", type=Path, metavar="LOG", help="mission.mcap; it is waited for")
+    parser.add_argument("--router", default=DEFAULT_ENDPOINT, metavar="ENDPOINT", help="of rmw_zenoh")
+    parser.add_argument("--domain", type=int, default=0, metavar="N", help="ROS_DOMAIN_ID")
+    parser.add_argument("--distro", choices=("humble", "jazzy"), default="jazzy", help="jazzy: or later")
+    parser.add_argument("--older-ns", type=int, help=argparse.SUPPRESS)
+    parser.add_argument("--until-stdin-closes", action="store_true", help=argparse.SUPPRESS)
+    options = parser.parse_args()
+    store = typestore()
+    session, is_own = open_session(options.router)
+    where = "a router of our own, since none was there" if is_own else "by the router there"
+    print(f"ROS 2 topics at {options.router}: {where}", file=sys.stderr, flush=True)
+    ended = threading.Event()
+    if options.until_stdin_closes:
+        threading.Thread(target=_wait, args=(ended,), name="stdin", daemon=True).start()
+    with RosNode(session, "onehop", store, options.domain, options.distro != "humble") as node:
+        Bridge(options.log, node, store, options.older_ns).run(ended.is_set)
+    return 0
+
+
+def _wait(ended: threading.Event) -> None:
+    while os.read(0, 1):
+        pass
+    ended.set()
+
+
+if __name__ == "__main__":
+    startup.main(main)

@@ -1,0 +1,79 @@
+"""The bridge: it reads the log of a running mission as it grows, and publishes it as ROS 2 topics.
+
+It has no place on the mission's bus, and nobody waits for it. In a mission that is faster than people
+look, ticks in between are left out, but for events and changes.
+"""
+
+import time
+from collections.abc import Callable
+from itertools import groupby
+from operator import attrgetter
+from pathlib import Path
+from typing import Any
+
+from onehop.analysis.growing_log import GrowingLog
+from onehop.analysis.log import Log
+from onehop.analysis.ros2.publications import DEPTH, LASTING_DEPTH, Publications, lasts
+from onehop.contracts import topics
+from onehop.contracts.errors import DecodeError
+from onehop.ros2.node import RosNode
+from onehop.ros2.rmw import Qos
+from onehop.wire.log_reader import LoggedTick, forged
+from onehop.wire.selection import one_of
+
+LOOK_S = 1.0 / 30.0
+"""How often it is looked for more [s]."""
+
+WHOLE_TICKS = 2
+"""Newest ticks, of those that have come since the last look, of which everything is published."""
+
+
+class Bridge:
+    """Publishes one log. older_ns: when a file of its name was written that is another mission's."""
+
+    def __init__(self, path: Path, node: RosNode, store: Any, older_ns: int | None = None) -> None:
+        self._growing = GrowingLog(path, older_ns)
+        self._node = node
+        self._store = store
+        self._publications: Publications | None = None
+        self._publish: dict[str, Callable[[Any], None]] = {}
+        self._next = 0
+
+    def run(self, ended: Callable[[], bool]) -> int:
+        """Until the mission has its outcome, or ended(); returns ticks read. Raises LogError."""
+        while True:
+            is_last = ended()
+            started = time.monotonic()
+            self._growing.grow()
+            log = self._growing.log
+            if log is not None:
+                self._read_on(log)
+                is_last = is_last or log.summary is not None
+            if is_last:
+                return self._next
+            time.sleep(max(0.0, LOOK_S - (time.monotonic() - started)))
+
+    def _read_on(self, log: Log) -> None:
+        if self._publications is None:
+            self._publications = Publications(log, self._store)
+        last = self._growing.last_tick
+        whole_from = max(self._next, last - WHOLE_TICKS + 1)
+        wire = log.file.wire
+        try:
+            if self._next < whole_from:
+                said = one_of(topics.TRUTH, topics.out(""), topics.rx(""))
+                self._take(self._publications, wire.select(said, self._next, whole_from - 1), False)
+            if whole_from <= last:
+                self._take(self._publications, wire.select(lambda _: True, whole_from, last), True)
+        except DecodeError as error:
+            raise forged(log.path, error) from None
+        self._next = max(self._next, last + 1)
+
+    def _take(self, publications: Publications, messages: Any, whole: bool) -> None:
+        for tick, group in groupby(messages, key=attrgetter("tick")):
+            logged = LoggedTick(tick, [(one.key, one.data) for one in group])
+            for topic, kind, _, message in publications.of(logged, whole):
+                if topic not in self._publish:
+                    qos = Qos(lasts(topic), LASTING_DEPTH if lasts(topic) else DEPTH)
+                    self._publish[topic] = self._node.publisher(topic, kind, qos)
+                self._publish[topic](message)
