@@ -2,7 +2,7 @@
 
 import json
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -43,8 +43,11 @@ class Watched:
             self._stirred.notify_all()
 
     def wait(self, tick: int) -> None:
+        self.wait_until(lambda: self.source.last_tick >= tick)
+
+    def wait_until(self, done: Callable[[], bool]) -> None:
         with self._stirred:
-            assert self._stirred.wait_for(lambda: self.source.last_tick >= tick, PATIENCE_S)
+            assert self._stirred.wait_for(done, PATIENCE_S)
 
 
 @pytest.fixture
@@ -87,7 +90,7 @@ def test_a_log_that_grows_shows_every_moment_as_the_whole_log_does(
     assert all(early)
     growing.write(10_000)
     growing.close()
-    watched.wait(read.last_tick)
+    watched.wait_until(lambda: source.state()["state"] == "ended")
     assert [source.frame(*one) for one in wanted] == early == [read.frame(*one) for one in wanted]
     assert source.story is not None
     assert read.story is not None
