@@ -90,6 +90,7 @@ def test_a_log_that_grows_shows_every_moment_as_the_whole_log_does(
     assert all(early)
     growing.write(10_000)
     growing.close()
+    watched.wait(read.last_tick)
     watched.wait_until(lambda: source.state()["state"] == "ended")
     assert [source.frame(*one) for one in wanted] == early == [read.frame(*one) for one in wanted]
     assert source.story is not None
