@@ -7,7 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from onehop.analysis.ros2.types import typestore
 from onehop.commands.output import say
 from onehop.wire.output_folder import LOG
 
@@ -27,6 +26,8 @@ class Ros2:
 @contextlib.contextmanager
 def bridge(ros2: Ros2, folder: Path) -> Iterator[None]:
     """A bridge for the mission that is about to start. Raises InputError when rosbags is missing."""
+    from onehop.analysis.ros2.types import typestore
+
     typestore()
     log = folder / LOG
     command = [sys.executable, "-m", "onehop.ros2", str(log), "--router", ros2.router]

@@ -17,7 +17,10 @@ DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
 """Where nodes look for the router of rmw_zenoh by default."""
 
 FIND_MS = 1000
-"""How long a router is looked for [ms]."""
+"""How long a router is looked for before one is opened, or before it is looked for again [ms]."""
+
+PATIENCE_S = 20.0
+"""How long a robot waits for a router: it may start before the bridge that opens one [s]."""
 
 HEARTBEAT_S = 0.5
 """How often a publisher that lasts says what it has sent last, as rmw_zenoh's do [s]."""
@@ -38,15 +41,31 @@ def open_session(endpoint: str) -> tuple[zenoh.Session, bool]:
 
     Raises MissionError.
     """
-    client = {"mode": "client", "connect/endpoints": [endpoint], "connect/timeout_ms": FIND_MS}
     with contextlib.suppress(zenoh.ZError):
-        return _open({**client, "connect/exit_on_failure": True, "listen/endpoints": []}), False
+        return _open_client(endpoint), False
     if not endpoint.startswith(LOOPBACK):
         raise MissionError(f"no router at {endpoint}: start rmw_zenohd there, or give its address")
     try:
         return _open({"mode": "router", "listen/endpoints": [endpoint]}), True
     except zenoh.ZError as error:
         raise MissionError(f"no router at {endpoint}: {str(error).splitlines()[0]}") from None
+
+
+def wait_for_router(endpoint: str) -> zenoh.Session:
+    """A session at a router of ROS 2 that others open. Raises MissionError when there is none in time."""
+    deadline = time.monotonic() + PATIENCE_S
+    while True:
+        try:
+            return _open_client(endpoint)
+        except zenoh.ZError as error:
+            if time.monotonic() > deadline:
+                why = str(error).splitlines()[0]
+                raise MissionError(f"no router of ROS 2 at {endpoint}: {why}") from None
+
+
+def _open_client(endpoint: str) -> zenoh.Session:
+    client = {"mode": "client", "connect/endpoints": [endpoint], "connect/timeout_ms": FIND_MS}
+    return _open({**client, "connect/exit_on_failure": True, "listen/endpoints": []})
 
 
 def _open(settings: dict[str, Any]) -> zenoh.Session:

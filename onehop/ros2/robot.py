@@ -33,7 +33,7 @@ class Ros2Robot(Program):
     def __init__(self, briefing: Briefing) -> None:
         from onehop.analysis.ros2.publications import DEPTH
         from onehop.analysis.ros2.types import typestore
-        from onehop.ros2.node import RosNode, open_session
+        from onehop.ros2.node import RosNode, wait_for_router
         from onehop.ros2.rmw import Qos
 
         given: Ros2Parameters = briefing.parameters
@@ -41,7 +41,7 @@ class Ros2Robot(Program):
         self._lock = threading.Lock()
         self._newest: Twist | None = None
         self._in_force, self._since_ns = STANDSTILL, 0
-        session, _ = open_session(given.router)
+        session = wait_for_router(given.router)
         name, hashes = f"robot_{briefing.robot}", given.distro != "humble"
         self._node = RosNode(session, f"{name}_driver", typestore(), given.domain, hashes)
         self._node.subscribe(
