@@ -52,7 +52,7 @@ def open_session(endpoint: str) -> tuple[zenoh.Session, bool]:
 
 
 def wait_for_router(endpoint: str) -> zenoh.Session:
-    """A session at a router of ROS 2 that others open. Raises MissionError when there is none in time."""
+    """A session at a router of ROS 2 that others open. Raises MissionError if none is there in time."""
     deadline = time.monotonic() + PATIENCE_S
     while True:
         try:
