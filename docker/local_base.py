@@ -83,7 +83,7 @@ def _packages() -> Iterator[tuple[Path, str]]:
 
 
 def _name(requirement: str) -> str:
-    """The name of a package in the one spelling that PEP 503 gives it: packages spell each other freely."""
+    """The name of a package in the one spelling of PEP 503: packages spell each other freely."""
     match = re.match(r"[A-Za-z0-9._-]+", requirement)
     assert match is not None, requirement
     return re.sub(r"[-_.]+", "-", match.group(0)).lower()
