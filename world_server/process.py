@@ -22,7 +22,7 @@ from world_server.core.world import World
 from world_server.mailbox import Mailbox, MissionBrokenError
 from world_server.roll_call import ACCOUNT_S, RollCall
 
-START_S = 30.0
+START_S = 60.0
 """How long the start of all processes may take [s], if nothing else is said."""
 
 RECORDER_AWAY_S = 10.0
