@@ -20,12 +20,14 @@ from onehop.ros2.node import RosNode
 from onehop.ros2.rmw import Qos
 from onehop.wire.log_reader import LoggedTick, forged
 from onehop.wire.selection import one_of
+from world_server.recording import BATCH_TICKS
 
 LOOK_S = 1.0 / 30.0
 """How often it is looked for more [s]."""
 
-WHOLE_TICKS = 2
-"""Newest ticks, of those that have come since the last look, of which everything is published."""
+MOST_WHOLE = BATCH_TICKS
+"""Ticks that may come at a look with everything of them published, since so many are written at once. Of
+more, which a mission faster than people look brings, the newest alone is published whole."""
 
 
 class Bridge:
@@ -57,7 +59,7 @@ class Bridge:
         if self._publications is None:
             self._publications = Publications(log, self._store)
         last = self._growing.last_tick
-        whole_from = max(self._next, last - WHOLE_TICKS + 1)
+        whole_from = self._next if last - self._next < MOST_WHOLE else last
         wire = log.file.wire
         try:
             if self._next < whole_from:

@@ -117,8 +117,8 @@ class Publications:
 
     def _mode(self, at_ns: int, robot: int, action: Action) -> Iterator[Publication]:
         """Its mode, when it changes."""
-        mode = "" if action.status is None else action.status.mode.value
-        if mode != self._modes.get(robot, ""):
+        mode = None if action.status is None else action.status.mode.value
+        if mode is not None and mode != self._modes.get(robot):
             self._modes[robot] = mode
             topic = f"/{ros_name(robot)}/mode"
             yield Publication(topic, "std_msgs/msg/String", at_ns, self._make.word(mode))
