@@ -13,6 +13,7 @@ from typer import Argument, Option
 from onehop.commands import numbers
 from onehop.commands.numbers import within
 from onehop.commands.optional_address import LIVE, OptionalAddress
+from onehop.ros2 import DEFAULT_ROUTER
 
 app = typer.Typer(
     name="onehop",
@@ -138,7 +139,7 @@ def run(
     ] = False,
     ros_router: Annotated[
         str, Option(metavar="ENDPOINT", help="Router of the ROS 2 nodes.")
-    ] = "tcp/127.0.0.1:7447",
+    ] = DEFAULT_ROUTER,
     ros_domain: Annotated[
         int, Option(envvar="ROS_DOMAIN_ID", help="Their domain.", callback=within(numbers.ROS_DOMAIN))
     ] = 0,

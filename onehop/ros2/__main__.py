@@ -8,15 +8,20 @@ from pathlib import Path
 
 from onehop.analysis.ros2.types import typestore
 from onehop.node import startup
+from onehop.ros2 import DEFAULT_ROUTER
 from onehop.ros2.bridge import Bridge
-from onehop.ros2.node import DEFAULT_ENDPOINT, RosNode, open_session
+from onehop.ros2.node import RosNode, open_session
+
+
+MOST_DOMAIN = 232
+"""The largest ROS_DOMAIN_ID: beyond it DDS would have no port left."""
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m onehop.ros2", description=__doc__)
     parser.add_argument("log", type=Path, metavar="LOG", help="mission.mcap; it is waited for")
-    parser.add_argument("--router", default=DEFAULT_ENDPOINT, metavar="ENDPOINT", help="of rmw_zenoh")
-    parser.add_argument("--domain", type=int, default=0, metavar="N", help="ROS_DOMAIN_ID")
+    parser.add_argument("--router", default=DEFAULT_ROUTER, metavar="ENDPOINT", help="of rmw_zenoh")
+    parser.add_argument("--domain", type=_domain, default=0, metavar="N", help="ROS_DOMAIN_ID")
     parser.add_argument("--distro", choices=("humble", "jazzy"), default="jazzy", help="jazzy: or later")
     parser.add_argument("--older-ns", type=int, help=argparse.SUPPRESS)
     parser.add_argument("--until-stdin-closes", action="store_true", help=argparse.SUPPRESS)
@@ -31,6 +36,12 @@ def main() -> int:
     with RosNode(session, "onehop", store, options.domain, options.distro != "humble") as node:
         Bridge(options.log, node, store, options.older_ns).run(ended.is_set)
     return 0
+
+
+def _domain(text: str) -> int:
+    if not (text.isascii() and text.isdigit() and int(text) <= MOST_DOMAIN):
+        raise argparse.ArgumentTypeError(f"{text!r} is no domain: 0 to {MOST_DOMAIN}")
+    return int(text)
 
 
 def _wait(ended: threading.Event) -> None:

@@ -13,9 +13,6 @@ import zenoh.ext
 from onehop.contracts.errors import MissionError
 from onehop.ros2 import rmw
 
-DEFAULT_ENDPOINT = "tcp/127.0.0.1:7447"
-"""Where nodes look for the router of rmw_zenoh by default."""
-
 FIND_MS = 1000
 """How long a router is looked for before one is opened, or before it is looked for again [ms]."""
 

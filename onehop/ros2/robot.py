@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar, Literal
 
 from onehop.robot import STANDSTILL, Action, Briefing, Percept, Program, Range, Twist
+from onehop.ros2 import DEFAULT_ROUTER
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,7 +19,7 @@ class Ros2Parameters:
     hold_s: how long a command is in force when no other one comes [s], in the mission's time.
     """
 
-    router: str = "tcp/127.0.0.1:7447"
+    router: str = DEFAULT_ROUTER
     domain: Annotated[int, Range(0, 232)] = 0
     distro: Literal["humble", "jazzy"] = "jazzy"
     hold_s: Annotated[float, Range(0.01, 60.0)] = 0.5
