@@ -12,7 +12,6 @@ from onehop.ros2 import DEFAULT_ROUTER
 from onehop.ros2.bridge import Bridge
 from onehop.ros2.node import RosNode, open_session
 
-
 MOST_DOMAIN = 232
 """The largest ROS_DOMAIN_ID: beyond it DDS would have no port left."""
 
