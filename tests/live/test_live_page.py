@@ -76,12 +76,14 @@ def places(page: Page) -> list[str | None]:
 def test_a_mission_is_watched_its_leader_killed_by_the_button_and_another_elected(
     tmp_path: Path, page: Page
 ) -> None:
-    with shown_mission(tmp_path, MAPS / "map1.toml", "clock.limit_s=40") as shown:
+    """By the wall clock: at full speed the mission could be over before anybody finds a button."""
+    timed = ('clock.mode="realtime"', "clock.speed=4", "clock.limit_s=80")
+    with shown_mission(tmp_path, MAPS / "map1.toml", *timed) as shown:
         page.goto(shown.url)
         expect(page.locator("#state")).to_have_text("running")
         expect(page.locator(".events")).to_contain_text("The formation stands")
-        before = places(page)
-        until(page, lambda: clock_s(page) > 12.0)
+        before, seen_s = places(page), clock_s(page)
+        until(page, lambda: clock_s(page) > seen_s + 4.0)
         after = places(page)
         assert len(after) == 6
         assert all(here and there and here != there for here, there in zip(before, after, strict=True))
