@@ -14,6 +14,8 @@ MOST_IDS = 40
 def printable(text: str, longest: int = LONGEST) -> str:
     """The text in one line: escapes for what does not print, "..." for what is too long."""
     shown = text if len(text) <= longest else text[:longest] + "..."
+    if shown.isprintable():
+        return shown
     return "".join(each if each.isprintable() else ascii(each)[1:-1] for each in shown)
 
 

@@ -8,6 +8,8 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+import numpy as np
+
 from onehop.analysis.log import Log
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
@@ -181,6 +183,6 @@ def _slots(truth: Truth, actions: Mapping[int, Action], story: Story) -> Iterato
 
 def scan(seen: Observation) -> dict[str, Any]:
     """What one robot's laser sees, [cm]; -1 where nothing is in range."""
-    ranges = [round(100.0 * one) if math.isfinite(one) else -1 for one in seen.scan.tolist()]
+    ranges = np.where(np.isfinite(seen.scan), np.rint(100.0 * seen.scan), -1.0)
     pose = seen.pose
-    return {"x": pose.x, "y": pose.y, "heading": pose.heading, "ranges": ranges}
+    return {"x": pose.x, "y": pose.y, "heading": pose.heading, "ranges": ranges.astype(int).tolist()}

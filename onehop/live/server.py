@@ -61,6 +61,7 @@ class LiveServer:
                 access_log=False,
                 server_header=False,
                 ws_max_size=LONGEST_BYTES,
+                ws_per_message_deflate=False,
                 timeout_graceful_shutdown=CLOSE_S,
             )
         )

@@ -10,6 +10,7 @@ from typing import Any
 import msgspec
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
+from onehop.analysis.report.narrative import NarrativeEvent
 from onehop.contracts.errors import DecodeError, LogError
 from onehop.contracts.operation import Pace
 from onehop.contracts.printable import json_value, printable
@@ -31,8 +32,8 @@ from onehop.live.source import Source
 from onehop.live.story import CHARTS
 from onehop.live.watchers import Watchers
 
-FRAME_S = 1.0 / 25.0
-"""Least time between two frames [s]: 25 a second look smooth, since the page moves robots in between."""
+FRAME_S = 1.0 / 20.0
+"""Least time between two frames [s]: 20 a second look smooth, since the page moves robots in between."""
 
 EVENTS_S = 0.25
 """Least time between two looks at the narrative [s]: a team in trouble notes something every tick."""
@@ -69,6 +70,7 @@ class Viewer:
         self._sending = asyncio.Lock()
         self._tasks: set[asyncio.Task[None]] = set()
         self._sent: dict[str, Any] = {}
+        self._narrative: list[NarrativeEvent] = []
         self._events: list[list[Any]] = []
         self._events_due_s = 0.0
         self._samples = 0
@@ -167,7 +169,8 @@ class Viewer:
             ("difference", self._difference and self._difference.found),
         ):
             if value is not None and self._sent.get(name) != value:
-                self._sent[name] = reply[name] = value
+                self._sent[name] = value
+                reply[name] = json_value(value)
         self._add_story(reply)
         last = self._source.last_tick
         tick = last if want.tick == NEWEST else min(want.tick, last)
@@ -180,7 +183,7 @@ class Viewer:
                 shown = None
             if shown is not None:
                 reply["frame"] = shown
-        return {"kind": "news", **json_value(reply)} if reply else None
+        return {"kind": "news", **reply} if reply else None
 
     def _of_hand(self) -> dict[str, Any] | None:
         hand = self._hand
@@ -227,7 +230,11 @@ class Viewer:
             return
         self._events_due_s = loop.time() + EVENTS_S
         loop.call_later(EVENTS_S, self.stir)
-        told = [[round(e.at_s, 2), e.weight, printable(e.text, 600), e.robot] for e in story.events()]
+        events = story.events()
+        if events is self._narrative:
+            return
+        self._narrative = events
+        told = [[round(e.at_s, 2), e.weight, printable(e.text, 600), e.robot] for e in events]
         same = 0
         for before, now in zip(self._events, told, strict=False):
             if before != now:

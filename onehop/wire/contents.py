@@ -4,7 +4,10 @@ A stretch is what is read at once: a chunk, or messages that lie between the oth
 from which log time to which it goes.
 """
 
+from bisect import bisect_left, bisect_right
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from operator import attrgetter
 from pathlib import Path
 from typing import BinaryIO, NamedTuple
 
@@ -74,6 +77,32 @@ class Contents:
     torn: bool = True
     broken: RecordError | None = None
     unreadable: list[RecordError] = field(default_factory=list)
+    _looked_at: int = 0
+    _in_order: bool = True
+
+    def stretches_of(self, first_ns: int, last_ns: int) -> Iterator[Stretch]:
+        """Those with messages of these log times, ends included, found without a look at all others.
+
+        In a file whose heads do not go forward in time all are looked at.
+        """
+        stretches = self.stretches
+        self._look_at_new()
+        begin, end = 0, len(stretches)
+        if self._in_order:
+            begin = bisect_left(stretches, first_ns, key=attrgetter("last_ns"))
+            end = bisect_right(stretches, last_ns, lo=begin, key=attrgetter("first_ns"))
+        for i in range(begin, end):
+            if stretches[i].last_ns >= first_ns and stretches[i].first_ns <= last_ns:
+                yield stretches[i]
+
+    def _look_at_new(self) -> None:
+        """Whether those that have been added begin and end no earlier than the ones before."""
+        stretches = self.stretches
+        for i in range(max(1, self._looked_at), len(stretches)):
+            before, one = stretches[i - 1], stretches[i]
+            if one.first_ns < before.first_ns or one.last_ns < before.last_ns:
+                self._in_order = False
+        self._looked_at = len(stretches)
 
 
 def damaged(path: Path, at: int, why: str) -> LogError:

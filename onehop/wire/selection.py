@@ -73,9 +73,7 @@ class WireMessages:
             try:
                 for channel in channels:
                     reader.learn(channel.id, channel.topic)
-                for stretch in stretches:
-                    if stretch.first_ns > end_ns or (channels and stretch.last_ns < begin_ns):
-                        continue
+                for stretch in self.contents.stretches_of(begin_ns if channels else 0, end_ns):
                     at = stretch.at
                     yield from reader.messages(records_of(stretch, stream))
                 broken = self.contents.broken
