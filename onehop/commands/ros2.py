@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from onehop.commands.output import say
+from onehop.contracts.errors import MissionError
 from onehop.wire.output_folder import LOG
 
 LEAVE_S = 10.0
@@ -25,7 +26,10 @@ class Ros2:
 
 @contextlib.contextmanager
 def bridge(ros2: Ros2, folder: Path) -> Iterator[None]:
-    """A bridge for the mission that is about to start. Raises InputError when rosbags is missing."""
+    """A bridge for the mission that is about to start; it is at its router when this is entered.
+
+    Raises InputError when rosbags is missing, MissionError when it does not start; it has said why.
+    """
     from onehop.analysis.ros2.types import typestore
 
     typestore()
@@ -34,11 +38,18 @@ def bridge(ros2: Ros2, folder: Path) -> Iterator[None]:
     command += ["--domain", str(ros2.domain), "--distro", ros2.distro, "--until-stdin-closes"]
     if log.exists():
         command += ["--older-ns", str(log.stat().st_mtime_ns)]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True) as child:
+    with subprocess.Popen(
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, start_new_session=True
+    ) as child:
+        assert child.stdin is not None
+        assert child.stdout is not None
         try:
+            told = child.stdout.readline()
+            if not told:
+                raise MissionError("the bridge to ROS 2 did not start")
+            say(told.rstrip())
             yield
         finally:
-            assert child.stdin is not None
             child.stdin.close()
             try:
                 child.wait(LEAVE_S)

@@ -2,7 +2,6 @@
 
 import argparse
 import os
-import sys
 import threading
 from pathlib import Path
 
@@ -28,7 +27,7 @@ def main() -> int:
     store = typestore()
     session, is_own = open_session(options.router)
     where = "a router of our own, since none was there" if is_own else "by the router there"
-    print(f"ROS 2 topics at {options.router}: {where}", file=sys.stderr, flush=True)
+    print(f"ROS 2 topics at {options.router}: {where}", flush=True)
     ended = threading.Event()
     if options.until_stdin_closes:
         threading.Thread(target=_wait, args=(ended,), name="stdin", daemon=True).start()

@@ -1,7 +1,7 @@
 """The bridge: it reads the log of a running mission as it grows, and publishes it as ROS 2 topics.
 
-It has no place on the mission's bus, and nobody waits for it. In a mission that is faster than people
-look, ticks in between are left out, but for events and changes.
+It has no place on the mission's bus, and nobody waits for it. Of a mission that is faster than people
+look some ticks a second are published whole, and of all others events and changes.
 """
 
 import time
@@ -24,6 +24,9 @@ from world_server.recording import BATCH_TICKS
 
 LOOK_S = 1.0 / 30.0
 """How often it is looked for more [s]."""
+
+FAST_LOOK_S = 1.0 / 10.0
+"""The same when there has been more than can be published: it is the mission's turn [s]."""
 
 MOST_WHOLE = BATCH_TICKS
 """Ticks that may come at a look with everything of them published, since so many are written at once. Of
@@ -48,14 +51,17 @@ class Bridge:
             started = time.monotonic()
             self._growing.grow()
             log = self._growing.log
+            pause_s = LOOK_S
             if log is not None:
-                self._read_on(log)
+                if not self._read_on(log):
+                    pause_s = FAST_LOOK_S
                 is_last = is_last or log.summary is not None
             if is_last:
                 return self._next
-            time.sleep(max(0.0, LOOK_S - (time.monotonic() - started)))
+            time.sleep(max(0.0, pause_s - (time.monotonic() - started)))
 
-    def _read_on(self, log: Log) -> None:
+    def _read_on(self, log: Log) -> bool:
+        """Publish what is new; whether all of it was published whole."""
         if self._publications is None:
             self._publications = Publications(log, self._store)
         last = self._growing.last_tick
@@ -69,7 +75,9 @@ class Bridge:
                 self._take(self._publications, wire.select(lambda _: True, whole_from, last), True)
         except DecodeError as error:
             raise forged(log.path, error) from None
+        is_whole = whole_from == self._next
         self._next = max(self._next, last + 1)
+        return is_whole
 
     def _take(self, publications: Publications, messages: Any, whole: bool) -> None:
         for tick, group in groupby(messages, key=attrgetter("tick")):

@@ -134,6 +134,18 @@ def test_a_log_is_published_afterwards_too_with_the_keys_of_humble(tmp_path: Pat
         command = [sys.executable, "-m", "onehop.ros2", str(tmp_path / "out" / "mission.mcap")]
         command += ["--router", router, "--domain", "7", "--distro", "humble"]
         done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
-        assert (done.returncode, done.stderr) == (0, f"ROS 2 topics at {router}: by the router there\n")
+        assert (done.returncode, done.stdout) == (0, f"ROS 2 topics at {router}: by the router there\n")
         wait("it came", lambda: "7/clock/rosgraph_msgs::msg::dds_::Clock_/TypeHashNotSupported" in heard)
     assert {key.rpartition("/")[2] for key in heard} == {"TypeHashNotSupported"}
+
+
+def test_without_a_router_nothing_starts(tmp_path: Path) -> None:
+    """On another host no router of our own is opened; 192.0.2.1 is nobody's (RFC 5737)."""
+    scenario = Path(__file__).parents[2] / "scenarios" / "map1.toml"
+    command = [sys.executable, "-m", "onehop", "run", str(scenario), "--out", str(tmp_path / "out")]
+    command += ["--ros2", "--ros-router", "tcp/192.0.2.1:7447"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+    assert done.returncode == 2
+    assert "no router at tcp/192.0.2.1:7447: start rmw_zenohd there, or give its address" in done.stderr
+    assert "the bridge to ROS 2 did not start" in done.stderr
+    assert not (tmp_path / "out" / "mission.mcap").exists()

@@ -1,6 +1,7 @@
 """An exported bag, read back by rosbags and by the mcap library: types, values, frames, stamps, QoS."""
 
 import math
+import runpy
 from collections import defaultdict
 from pathlib import Path
 from typing import Any
@@ -211,3 +212,20 @@ def test_without_rosbags_one_line_says_so(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
     with pytest.raises(InputError, match="rosbags is not installed"):
         typestore()
+
+
+def test_an_example_finds_every_scan_on_a_wall_or_a_robot_and_draws_it(
+    bag: Path, log: Log, tmp_path: Path
+) -> None:
+    """By frames and messages of the bag alone; what it finds is compared with the map."""
+    example = runpy.run_path(str(Path(__file__).parents[3] / "examples" / "draw_bag.py"))
+    moment = example["Moment"](bag, 1.0)
+    robots = [moment.in_map(f"robot_{robot}/base_link")[:2] for robot in log.robots]
+    walls = load_map(log.scenario.map, log.bundle.files).segments
+    hits = [p for robot in log.robots for p in moment.points(moment.newest[f"/robot_{robot}/scan"])]
+    assert hits
+    for hit in hits:
+        of_robots = min(abs(math.dist(hit, robot) - log.scenario.robot.radius) for robot in robots)
+        assert min(of_robots, segment_distances(hit[None, :], walls).min()) < 0.01
+    example["draw"](moment, tmp_path / "bag.png")
+    assert (tmp_path / "bag.png").read_bytes().startswith(b"\x89PNG")
