@@ -19,7 +19,8 @@ from onehop.wire.records import channel, records_in
 class GrowingLog:
     """One log. log: what it is by now, None until there is one.
 
-    older_ns: when a file of the same name was written last that is none of this mission's.
+    file_number: how many files of this name there have been. older_ns: when a file of the same name was
+    written last that is none of this mission's.
     """
 
     def __init__(self, path: Path, older_ns: int | None = None) -> None:
@@ -27,6 +28,7 @@ class GrowingLog:
         self.log: Log | None = None
         self._older_ns = older_ns
         self._inode = 0
+        self.file_number = 0
 
     @property
     def last_tick(self) -> int:
@@ -37,7 +39,10 @@ class GrowingLog:
 
     def open(self) -> None:
         """Raises LogError when it is no log of ours."""
-        self._inode = self.path.stat().st_ino if self.path.exists() else 0
+        inode = self.path.stat().st_ino if self.path.exists() else 0
+        if inode != self._inode:
+            self._inode = inode
+            self.file_number += 1
         file = LogFile(self.path)
         _know_channels(file, file.contents.stretches)
         self.log = Log(file)

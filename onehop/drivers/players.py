@@ -6,15 +6,17 @@ radio is told at which instants truths and messages came (`Intake`).
 """
 
 from collections.abc import Callable, Iterator, Mapping
+from typing import Protocol
 
 from onehop.contracts import topics
 from onehop.contracts.action_limits import ActionLimits
-from onehop.contracts.briefings import robot_briefing
+from onehop.contracts.briefings import Briefing, robot_briefing
 from onehop.contracts.errors import DecodeError
 from onehop.contracts.messages import (
     Action,
     Inbox,
     Observation,
+    Percept,
     RadioRecord,
     TransmitRequest,
     Truth,
@@ -44,15 +46,24 @@ def value_in(kind: type[M], tick: LoggedTick, key: str, in_lock_step: bool = Fal
     return None if data is None else value_of(kind, Selected(tick.tick, key, data), in_lock_step)
 
 
-class RobotPlayer:
-    """One robot in every incarnation."""
+class Stepping(Protocol):
+    """What is asked for the bytes of an action, as a Host is; may raise ProgramError."""
 
-    def __init__(self, scenario: Scenario, robot: int) -> None:
+    def step(self, percept: Percept) -> bytes: ...
+
+
+class RobotPlayer:
+    """One robot in every incarnation. make_host: of one incarnation."""
+
+    def __init__(
+        self, scenario: Scenario, robot: int, make_host: Callable[[Briefing], Stepping] = Host
+    ) -> None:
         self._scenario = scenario
+        self._make_host = make_host
         self._in_lock_step = not scenario.clock.is_realtime
         self._id = robot
         self._incarnation = -1
-        self._host: Host | None = None
+        self._host: Stepping | None = None
         self._seen: dict[int, Observation] = {}
 
     def play(self, tick: LoggedTick) -> Iterator[tuple[str, bytes]]:
@@ -63,7 +74,7 @@ class RobotPlayer:
             return
         if self._host is None or self._incarnation != observation.incarnation:
             self._incarnation = observation.incarnation
-            self._host = Host(robot_briefing(self._scenario, i, self._incarnation))
+            self._host = self._make_host(robot_briefing(self._scenario, i, self._incarnation))
             self._seen = {}
         self._seen[tick.tick] = observation
         if inbox is None or inbox.tick not in self._seen:

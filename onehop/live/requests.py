@@ -42,6 +42,13 @@ class Explain(Request, frozen=True, tag="explain"):
     at_s: Seconds
 
 
+class RoadMap(Request, frozen=True, tag="road map"):
+    """What a robot that leads had planned last by a tick."""
+
+    robot: int
+    tick: Annotated[int, msgspec.Meta(ge=0, lt=1 << 32)]
+
+
 class Order(Request, frozen=True, tag="order"):
     """A fault, with keys and values as in a scenario. number: of the answer."""
 
@@ -61,7 +68,7 @@ class TakeOver(Request, frozen=True, tag="take over"):
     """The buttons, from whoever has them."""
 
 
-AnyRequest = Want | Explain | Order | SetPace | TakeOver
+AnyRequest = Want | Explain | RoadMap | Order | SetPace | TakeOver
 
 _DECODER: msgspec.json.Decoder[AnyRequest] = msgspec.json.Decoder(AnyRequest)
 

@@ -13,10 +13,11 @@ from onehop.analysis.growing_log import GrowingLog
 from onehop.analysis.log import Log
 from onehop.analysis.report.narrative import summary_sentence
 from onehop.contracts import topics
-from onehop.contracts.errors import DecodeError, InputError, LogError
+from onehop.contracts.errors import DecodeError, InputError, LogError, OnehopError
 from onehop.contracts.messages import Action, RadioRecord, Truth
 from onehop.contracts.printable import printable
 from onehop.live.frame import Moment, frame, scan
+from onehop.live.road_maps import RoadMaps
 from onehop.live.setting import setting
 from onehop.live.story import Story
 from onehop.mission.rendezvous import way_into
@@ -51,6 +52,8 @@ class Source:
         self._ended = threading.Event()
         self._thread: threading.Thread | None = None
         self._read_all = False
+        self._road_maps = RoadMaps()
+        self._planning = threading.Lock()
 
     def open(self) -> None:
         """Open a log that has to be there. Raises LogError when it is none of ours."""
@@ -131,6 +134,19 @@ class Source:
             return [printable(line, LONGEST_LINE) for line in lines]
         except (InputError, LogError) as error:
             return [printable(str(error))]
+
+    def road_map(self, robot: int, tick: int) -> dict[str, Any]:
+        """What a robot had planned last by a tick; empty where that is not to be had. Plain values."""
+        log = self.log
+        if log is None or robot not in log.robots:
+            return {}
+        try:
+            with self._planning:
+                return self._road_maps.of(
+                    self._growing.file_number, log, robot, min(tick, self.last_tick)
+                )
+        except OnehopError:  # frames and `explain` say what is wrong with the log
+            return {}
 
     def _follow(self, changed: Callable[[], None]) -> None:
         while not self._ended.is_set():

@@ -22,6 +22,7 @@ from onehop.live.requests import (
     AnyRequest,
     Explain,
     Order,
+    RoadMap,
     SetPace,
     TakeOver,
     Want,
@@ -125,6 +126,9 @@ class Viewer:
             await self._send(
                 {"kind": "explained", "robot": request.robot, "at_s": request.at_s, "lines": told}
             )
+        elif isinstance(request, RoadMap):
+            planned = await asyncio.to_thread(self._source.road_map, request.robot, request.tick)
+            await self._send({"kind": "road map", "robot": request.robot, **planned})
         elif isinstance(request, TakeOver):
             self._watchers.give(self)
         elif isinstance(request, Order):

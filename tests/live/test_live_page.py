@@ -117,6 +117,10 @@ def test_a_log_is_moved_through_by_slider_and_events_and_says_why(tmp_path: Path
         assert page.evaluate("document.querySelectorAll('img').length") == 0
         assert page.evaluate("window.hacked") is None
         expect(page.locator("#clock")).to_have_text("1.0 s")
+        planning = page.get_by_role("button", name="Road map")
+        expect(planning).to_have_attribute("aria-pressed", "true")
+        page.keyboard.press("m")
+        expect(planning).to_have_attribute("aria-pressed", "false")
         page.locator("#slider").fill("114")
         expect(page.locator("#clock")).to_have_text("5.7 s")
         expect(page.locator(".card").nth(1)).to_contain_text("leader")

@@ -94,6 +94,9 @@ def test_a_page_that_says_nonsense_is_told_so_and_goes_on(server: LiveServer) ->
         page.say("explain", robot=1, at_s=3.0)
         page.until(lambda one: one.answers[-1]["kind"] == "explained", 10)
         assert page.answers[-1]["lines"][0].startswith("Robot 1 at 3.00 s")
+        page.say("road map", robot=1, tick=119)
+        page.until(lambda one: one.answers[-1]["kind"] == "road map", 10)
+        assert page.answers[-1] == {"kind": "road map", "robot": 1}
 
 
 def test_a_page_is_sent_nothing_that_it_has_not_asked_for(server: LiveServer) -> None:

@@ -168,6 +168,7 @@ function onKey(event) {
   const isButton = /^(BUTTON|SUMMARY)$/.test(event.target.tagName);
   const acts = { ".": step, "-": () => change(-1), "+": () => change(1), "=": () => change(1), ArrowLeft: () => jump(-1),
     ArrowRight: () => jump(1), "?": help, Escape: () => { byId("why").hidden = true; views.forEach((view) => view.pick("choose")); },
+    m: () => views.forEach((view) => view.showPlans(!view.showsPlans)),
     w: () => { const view = views.find((one) => one.chosen); if (view) askWhy(view, view.chosen, view.time); } };
   if (!isButton) acts[" "] = pause;
   const act = acts[event.key];
@@ -285,10 +286,11 @@ function fillLegend() {
         "Line from the leader: the way of its commands. Solid: the link is good. Long dashes: below the threshold. Dots: the last command was missed.",
         "Red stroke with a cross: a message that was lost.",
         "Dashed circle: the slot where a robot belongs. Dashed cross: what the leader drives to.",
+        "Fine net: the leader's road map, points that it tried and ways between them; thick line: the way that it took.",
         "Red cross: a robot that is gone. Dashed red ring: a fault is in force on it.",
         "Point at a robot for what its laser sees; press W for why it does what it does.",
         "Point at an event for why it happened. Everything done here is a fault in the log, at an exact tick: \u201cRun it again\u201d has the command.",
-        "Keys: space pause, . step, + \u2212 speed, \u2190 \u2192 events, 1-9 robot, W why, Esc close, ? this text."].map((text) => el("li", {}, text))));
+        "Keys: space pause, . step, + \u2212 speed, \u2190 \u2192 events, 1-9 robot, W why, M road map, Esc close, ? this text."].map((text) => el("li", {}, text))));
 }
 
 begin();

@@ -49,7 +49,8 @@ function lastBefore(samples, tick) {
   return low - 1;
 }
 
-const leads = (robot) => robot.status && robot.status.leader === robot.id;
+/** Whether a robot acts as leader. */
+export const leads = (robot) => robot.status && robot.status.leader === robot.id;
 
 function drawScan(pen, { frame, setting, chosen, place, scale, places }) {
   const robot = setting.robots.find((one) => one.id === chosen);

@@ -8,7 +8,8 @@ import { colours, el, fit, put, sizeOf } from "./dom.js";
 import { Events } from "./events.js";
 import { Feed } from "./feed.js";
 import { drawGround, filledPicture } from "./ground.js";
-import { drawTeam, fresh } from "./robots.js";
+import { Plans } from "./plans.js";
+import { drawTeam, fresh, leads } from "./robots.js";
 import { HINTS, TOOLS, Tools } from "./tools.js";
 
 const CARDS_MS = 200, JUMP_M = 5;
@@ -33,6 +34,8 @@ export class View {
     this.charts = new Charts((time) => page.seek(time));
     this.events = new Events((event) => page.explain(this, event));
     this.again = new Again((fault) => this.order(fault), (text, isBad) => page.tell(text, isBad));
+    this.plans = new Plans((request) => this.feed.say(request));
+    this.plansWanted = null;
     this.build();
     this.tools = new Tools(this.canvas, this);
     this.feed = new Feed(number, (message) => this.take(message), (isLost) => page.lost(this, isLost));
@@ -55,8 +58,9 @@ export class View {
     this.lastingLabel = el("label", { title: "How long cut, jam, stop and hold last; empty: until healed" }, "for", lasting, "s");
     const camera = (mode, name) => el("button", { type: "button", onclick: () => (this.camera.mode = mode) }, name);
     this.cameras = new Map([["team", camera("team", "Team")], ["map", camera("map", "Whole map")]]);
+    this.planning = el("button", { type: "button", title: "What the leader has planned (M)", onclick: () => this.showPlans(!this.showsPlans) }, "Road map");
     const tools = el("div", { class: "tools", role: "toolbar", "aria-label": "Map" },
-      el("span", { class: "cameras" }, ...this.cameras.values()),
+      el("span", { class: "cameras" }, ...this.cameras.values(), this.planning),
       ...this.toolButtons.values(), healing, this.lastingLabel);
     this.map = el("div", { class: "map" }, this.canvas, tools, this.hint);
     this.side = el("div", { class: "side" }, this.cards.element, this.events.element,
@@ -72,6 +76,16 @@ export class View {
     this.charts.isDirty = true;
   }
 
+  /** Whether road maps are shown: unless somebody says otherwise, where no lock-step has to wait for them. */
+  get showsPlans() {
+    return this.plansWanted ?? !(this.hand && this.hand.holds && this.hand.is_paced);
+  }
+
+  showPlans(are) {
+    this.plansWanted = are;
+    this.cardsDue = 0;
+  }
+
   /** Whether what is done here does something to a mission. */
   get may() {
     return Boolean(this.hand && this.hand.yours && this.hand.holds && this.page.isNow());
@@ -81,6 +95,7 @@ export class View {
     if (message.kind === "news") this.takeNews(message);
     else if (message.kind === "answer") this.page.tell(message.words, !message.done);
     else if (message.kind === "refused") this.page.tell(message.words, true);
+    else if (message.kind === "road map") this.plans.take(message);
     else if (message.kind === "explained") this.page.explained(message);
     else if (message.kind === "hello") this.begin(message);
     this.page.changed(this);
@@ -93,6 +108,7 @@ export class View {
     this.title.hidden = hello.logs < 2;
     this.isFresh = !this.frame;
     this.frame = this.before = null;
+    this.plans.begin();
     this.charts.samples = [];
     this.charts.isDirty = true;
     this.events.clear();
@@ -105,6 +121,7 @@ export class View {
       this.camera.begin(news.setting.bounds);
       this.cards.begin(news.setting.robots);
       this.charts.robots = news.setting.robots;
+      this.colours = new Map(news.setting.robots.map((robot) => [robot.id, robot.colour]));
       this.charts.period = this.period;
       this.element.classList.toggle("many", this.cards.areMany);
       this.repaint();
@@ -204,6 +221,7 @@ export class View {
     drawGround(pen, this.setting, this.picture, place, this.camera.scale, this.palette);
     if (this.frame) {
       this.flashes = fresh(this.flashes, now);
+      if (this.showsPlans) this.drawPlans(pen, place, now);
       drawTeam(pen, {
         frame: this.frame, places: this.places, setting: this.setting, palette: this.palette, place, now,
         scale: this.camera.scale, chosen: this.chosen, flashes: this.flashes, samples: this.charts.samples,
@@ -215,8 +233,15 @@ export class View {
     if (now >= this.cardsDue) this.showRest(now);
   }
 
+  drawPlans(pen, place, now) {
+    const leaders = this.frame.robots.filter(leads).map((robot) => robot.id);
+    this.plans.want(leaders, this.frame.tick, now);
+    this.plans.draw(pen, leaders, this.frame.tick, this.colours, place);
+  }
+
   showRest(now) {
     this.cardsDue = now + CARDS_MS;
+    this.planning.setAttribute("aria-pressed", String(this.showsPlans));
     const isLog = !this.hand;
     for (const [mode, button] of this.cameras) button.setAttribute("aria-pressed", String(mode === this.camera.mode));
     for (const button of this.handTools) {

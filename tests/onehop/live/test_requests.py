@@ -23,7 +23,8 @@ def test_a_request_is_what_its_kind_says() -> None:
         "", "[]", "{}", '{"kind":"shutdown"}', '{"kind":"want","tick":-2,"since":0}',
         '{"kind":"want","tick":1,"since":0,"more":1}', '{"kind":"pace","ticks_per_s":-1,"paused":false}',
         '{"kind":"pace","ticks_per_s":1e99,"paused":false}', '{"kind":"want","tick":"1","since":0}',
-        '{"kind":"explain","robot":1,"at_s":-1}', "[" * 100_000,
+        '{"kind":"explain","robot":1,"at_s":-1}',
+        '{"kind":"road map","robot":1,"tick":-1}', "[" * 100_000,
     ],
 )  # fmt: skip
 def test_anything_else_is_refused(text: str) -> None:
