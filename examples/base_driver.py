@@ -25,8 +25,8 @@ import zenoh
 
 WIRE_VERSION = 3
 
-RATE_HZ = 20.0
-"""How often it measures; the world takes the newest measurement at each of its ticks."""
+RATE_HZ = 40.0
+"""How often it measures; at the end of each of its ticks (50 ms) the world takes in the newest."""
 
 DEADMAN_S = 0.5
 """After so long without a command the base rests [s], whatever has become of world and network."""
