@@ -7,12 +7,13 @@ import pytest
 
 from onehop.contracts import hardware, topics
 from onehop.node.rights import rights
-from tests.examples.test_base_driver import EXAMPLES
 from tests.onehop.wire.test_wire_page import NAMES, layout, tables
 from world_server.core.bases import BEYOND
 from world_server.realtime.bases import FIRST_S
 
-PAGE = (Path(__file__).parents[3] / "docs" / "hardware.md").read_text()
+ROOT = Path(__file__).parents[3]
+
+PAGE = (ROOT / "docs" / "hardware.md").read_text()
 
 LAYOUTS = {
     kind.__name__: kind
@@ -46,7 +47,7 @@ def test_keys_and_rights_are_those_of_the_router() -> None:
 
 
 def test_the_times_are_those_of_the_code() -> None:
-    driver = (EXAMPLES / "base_driver.py").read_text()
+    driver = (ROOT / "examples" / "base_driver.py").read_text()
     rate, deadman = (
         float(re.findall(rf"^{name} = (\S+)", driver, re.M)[0]) for name in ("RATE_HZ", "DEADMAN_S")
     )
