@@ -122,7 +122,9 @@ class Bus:
 def identity(name: str, keys: str | None) -> dict[str, Any]:
     """What Zenoh has to know of who this is: a certificate, or else a password."""
     if keys is None:
-        secret = os.environ["ONEHOP_PASSWORD"]
+        secret = os.environ.get("ONEHOP_PASSWORD", "")
+        if not secret:
+            sys.exit("no password: give --keys DIR, or let onehop run start this driver")
         proof: dict[str, Any] = {"transport/auth/usrpwd": {"user": name, "password": secret}}
     else:
         secret, tls, own = name, "transport/link/tls/", os.path.join(keys, name)
@@ -191,11 +193,14 @@ def main() -> int:
     options = parser.parse_args()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))  # so that the base rests
     bus = Bus(options.mission, f"base-{options.id}", options.connect, options.keys)
-    base = make_base(bus.briefing(), options.words)
-    bus.announce()
-    status = serve(bus, base)
-    bus.close()
-    return status
+    try:
+        base = make_base(bus.briefing(), options.words)
+        bus.announce()
+        return serve(bus, base)
+    except KeyboardInterrupt:
+        return 130
+    finally:
+        bus.close()  # without it the process would not end
 
 
 if __name__ == "__main__":

@@ -78,7 +78,10 @@ def real_time(parts: Parts) -> RealTime:
         CommandHold(parts.scenario),
         radio,
         robots,
-        RealTimeBases(bus, mail, roll, parts.world.bases, clock.silence_s, parts.open_briefings),
+        RealTimeBases(
+            *(bus, mail, roll, parts.world.bases),
+            *(clock.silence_s, clock.hold_s, parts.open_briefings),
+        ),
         RealTimeFaults(bus, mail, roll, ids, parts.open_briefings),
         FaultOrders(bus, mail, ids),
         recording,

@@ -70,6 +70,27 @@ def test_a_base_drives_with_the_team_and_when_its_driver_is_killed_the_rest_goes
         )
 
 
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ('["./nowhere"]', "base_command of robot 5: './nowhere' cannot be started (No such file or dir"),
+        (
+            '["python", "-c", "exit(\'no wheels\')"]',
+            "the base-5 process died (exit status 1): no wheels; all",
+        ),
+    ],
+)
+def test_a_driver_that_does_not_start_ends_the_mission_in_one_line(
+    tmp_path: Path, command: str, said: str
+) -> None:
+    robots = f'robots=[{{id={REAL}, base="hardware", base_command={command}}}]'
+    mission = Mission(tmp_path, robots, scenario=SCENARIO)
+    printed, told = mission.child.communicate(timeout=DEADLINE_S)
+    assert said in printed + told
+    assert "Traceback" not in told
+    assert mission.child.returncode in (1, 2)
+
+
 def await_log(mission: Mission, happens: Callable[[LogFile], bool], what: str) -> None:
     """Wait until the log of a mission that runs shows something."""
     deadline = time.monotonic() + DEADLINE_S
@@ -101,7 +122,8 @@ def test_a_driver_that_is_started_by_hand_has_its_certificate_and_may_come_again
         slowly = ("clock.limit_s=600", "robot.leader_speed=0.05")
         mission = Mission(tmp_path, robots, *slowly, scenario=SCENARIO, options=options)
         await_log(mission, lambda log: len(way(log, REAL)) > 20, "it takes part")
-        first.kill()
+        first.send_signal(signal.SIGINT)
+        assert first.wait(DEADLINE_S) == 130
         await_log(mission, lambda log: REAL not in present(log), "it leaves")
     second = driver()
     with ended(second):

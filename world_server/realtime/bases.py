@@ -1,7 +1,8 @@
 """The drivers of real bases: what they measure is taken in when a tick ends, and the newest counts.
 
 Nobody waits for them once the mission has begun. What no base can have measured is dropped, and people
-are told of the first. Who measures nothing sound for too long has no base any more, and leaves.
+are told of the first. Whose measurement is old does not drive on by it, and who measures nothing sound
+for too long has no base any more, and leaves.
 """
 
 import contextlib
@@ -13,7 +14,7 @@ from functools import partial
 
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
-from onehop.contracts.geometry import Twist
+from onehop.contracts.geometry import STANDSTILL, Twist
 from onehop.contracts.hardware import Drive, Measured, Taken
 from onehop.contracts.messages import Truth
 from onehop.node.bus import Bus
@@ -56,7 +57,7 @@ class _Base:
 
 
 class RealTimeBases:
-    """All of them. silence_s: how long one may measure nothing [s].
+    """All of them. silence_s: how long one may measure nothing [s], hold_s: and be driven all the same.
 
     open_briefings: lets processes ask for their briefings meanwhile: a driver may come again.
     """
@@ -68,12 +69,14 @@ class RealTimeBases:
         roll: RollCall,
         bases: Bases,
         silence_s: float,
+        hold_s: float,
         open_briefings: Callable[[], AbstractContextManager[None]],
     ) -> None:
         self._mail = mail
         self._roll = roll
         self._rules = bases
         self._silence_s = silence_s
+        self._hold_s = hold_s
         self._open_briefings = open_briefings
         self._briefings: contextlib.ExitStack | None = None
         self._tell = bus.publisher(topics.to(topics.OPERATOR, topics.TOLD))
@@ -111,9 +114,11 @@ class RealTimeBases:
         ]
 
     def drive(self, tick: int, drives: Mapping[int, Twist]) -> None:
-        """Tell each by what it is to drive, as this tick has ended."""
+        """Tell each by what it is to drive, as this tick has ended; to rest, if it has not measured."""
+        now_s = time.monotonic()
         for base in self._bases:
-            base.put(encode(Drive(tick, drives[base.robot])))
+            is_fresh = now_s - base.sound_s <= self._hold_s
+            base.put(encode(Drive(tick, drives[base.robot] if is_fresh else STANDSTILL)))
 
     def fenced(self, truth: Truth) -> dict[int, str]:
         """Robots that have no base any more, and why they leave."""

@@ -59,6 +59,41 @@ def test_a_mission_with_a_base_is_executed_again_and_keeps_every_promise(
     assert 100 < len(taken) < 240  # it has not measured anew at every tick
 
 
+def everywhere(log: Forgery, robot: int, x: float, y: float) -> None:
+    """From a tick in the middle on a real base is there, and measures so."""
+
+    def change(one: Fields) -> None:
+        one["pose"].update(x=x, y=y)
+
+    ticks = range(measured(log), len(log.ticks))
+    log.present(ticks, robot, change)
+    for tick in ticks:
+        if log.has(tick, f"base/{robot}"):
+            log.change(tick, f"base/{robot}", lambda taken: change(taken["measured"]))
+
+
+def test_what_is_real_between_real_things_is_not_judged(tmp_path: Path) -> None:
+    two = f'robots=[{{id={REAL}, base="hardware"}}, {{id=4, base="hardware"}}]'
+    forgery = Forgery(mission(tmp_path, two, "clock.limit_s=6"))
+    assert judge(forgery.write(tmp_path / "sound.mcap")).violations == ()
+    everywhere(forgery, REAL, 39.95, 39.9)  # in a wall
+    everywhere(forgery, 4, 39.9, 39.95)  # and on each other
+    assert judge(forgery.write(tmp_path / "forged.mcap")).violations == ()
+
+
+def test_a_real_body_is_where_it_is_measured_after_its_robot_has_left(tmp_path: Path) -> None:
+    gone = f'faults=[{{kind="kill", at_s=2, robots=[{REAL}]}}]'
+    forgery = Forgery(mission(tmp_path, gone, "clock.limit_s=6"))
+    assert judge(forgery.write(tmp_path / "sound.mcap")).violations == ()
+    tick = next(tick for tick in range(80, 120) if forgery.has(tick, f"base/{REAL}"))
+    other = next(one for one in forgery.get(tick, "truth")["present"] if one["robot"] == 1)
+    forgery.change(
+        tick, f"base/{REAL}", lambda taken: taken["measured"].update(pose=dict(other["pose"]))
+    )
+    report = judge(forgery.write(tmp_path / "forged.mcap"))
+    assert set(report.broken) == {"no-collision"}
+
+
 def test_people_are_told_what_is_taken_from_the_log(quiet: Path) -> None:
     said = onehop("replay", quiet).stdout
     assert f"real base of robot {REAL}: what it measured is taken from the log\n" in said

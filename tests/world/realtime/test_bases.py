@@ -25,14 +25,14 @@ NAME = topics.base_name(REAL)
 class House:
     """One base, and what it deals with. said: by key. briefings: how often they have been opened."""
 
-    def __init__(self, silence_s: float = 60.0) -> None:
+    def __init__(self, silence_s: float = 60.0, hold_s: float = 60.0) -> None:
         self.said: list[tuple[str, bytes]] = []
         self.readers: dict[str, Callable[[bytes], None]] = {}
         self.present = {NAME}
         self.open = 0
         rules = Bases(scenario(), load_map(ROOM, {}))
         world: Any = self
-        self.bases = RealTimeBases(world, world, world, rules, silence_s, self.briefings)
+        self.bases = RealTimeBases(world, world, world, rules, silence_s, hold_s, self.briefings)
 
     def publisher(self, key: str, **_: Any) -> Callable[[bytes], None]:
         return lambda data: self.said.append((key, data))
@@ -111,6 +111,9 @@ def test_who_measures_nothing_sound_for_too_long_leaves_and_is_told_why() -> Non
     why = "2 measurements were dropped, the last because its scan has 90 ranges, the robot's laser 181"
     assert house.bases.fenced(truth(REAL)) == {REAL: f"its base is silent for -1 s: {why}"}
     assert house.bases.fenced(truth(1)) == {}  # it has left already
+    house.measure(3.0)
+    house.bases.take()
+    assert house.bases.fenced(truth(REAL)) == {REAL: "its base is silent for -1 s"}
 
 
 def test_without_its_driver_a_robot_leaves_and_the_driver_may_come_again() -> None:
@@ -128,12 +131,15 @@ def test_without_its_driver_a_robot_leaves_and_the_driver_may_come_again() -> No
     assert house.open == 0
 
 
-def test_a_base_is_told_by_what_to_drive() -> None:
-    house = House()
-    house.bases.drive(7, {REAL: Twist(0.5, -0.25)})
-    ((key, data),) = house.said
-    assert key == topics.to(NAME, topics.DRIVE)
-    assert decode(Drive, data) == Drive(7, Twist(0.5, -0.25))
+def test_a_base_is_told_by_what_to_drive_unless_its_measurement_is_old() -> None:
+    for hold_s, told in ((60.0, Twist(0.5, -0.25)), (-1.0, STANDSTILL)):
+        house = House(hold_s=hold_s)
+        house.measure(3.0)
+        house.bases.take()
+        house.bases.drive(7, {REAL: Twist(0.5, -0.25)})
+        ((key, data),) = house.said
+        assert key == topics.to(NAME, topics.DRIVE)
+        assert decode(Drive, data) == Drive(7, told)
 
 
 def test_the_mission_waits_for_the_first_measurement_of_each() -> None:
