@@ -6,6 +6,7 @@ from collections.abc import Callable
 from onehop.contracts import topics
 from onehop.contracts.arrays import FloatArray
 from onehop.contracts.briefings import LogBriefing, radio_briefing, robot_briefing
+from onehop.contracts.hardware import BaseBriefing
 from onehop.scenario.bundle import Bundle
 from onehop.scenario.link_trace import link_trace
 from onehop.wire.codec import encode
@@ -36,6 +37,10 @@ class Briefings:
             ),
             topics.config(topics.RECORDER): encode(log),
         }
+        scenario, clock = bundle.scenario, bundle.scenario.clock
+        for i in scenario.bases:
+            base = BaseBriefing(i, clock.period_ns, clock.silence_s, scenario.body_of(i))
+            self._others[topics.config(topics.base_name(i))] = encode(base)
 
     def answer(self, key: str) -> bytes | None:
         """The briefing that a process asks for under this key, None if there is none or it asks on."""

@@ -15,6 +15,7 @@ from world_server.mailbox import Mailbox
 from world_server.pace import PaceKeeper
 from world_server.process_faults import ProcessFaults
 from world_server.progress import ProgressReports
+from world_server.realtime.bases import RealTimeBases
 from world_server.realtime.faults import RealTimeFaults
 from world_server.realtime.mission import RealTime
 from world_server.realtime.radio import RealTimeRadio
@@ -77,6 +78,10 @@ def real_time(parts: Parts) -> RealTime:
         CommandHold(parts.scenario),
         radio,
         robots,
+        RealTimeBases(
+            *(bus, mail, roll, parts.world.bases),
+            *(clock.silence_s, clock.hold_s, parts.open_briefings),
+        ),
         RealTimeFaults(bus, mail, roll, ids, parts.open_briefings),
         FaultOrders(bus, mail, ids),
         recording,

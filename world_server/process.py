@@ -46,8 +46,9 @@ def main() -> int:
     walls = load_map(bundle.scenario.map, bundle.files)
     with scenario_file.in_file(options.scenario):
         world = World(bundle.scenario, walls)
-    world.observe()  # compiles or loads the laser kernel before anyone waits for it
-    with startup.host(options, topics.clients(bundle.scenario.team.robots)) as bus:
+    if not world.bases:  # nobody knows yet where these are
+        world.observe()  # compiles or loads the laser kernel before anyone waits for it
+    with startup.host(options, topics.clients(bundle.scenario.team.robots, world.bases)) as bus:
         _host(bus, bundle, world, walls.segments, options.driver, options.start_s)
     return 0
 
@@ -77,7 +78,7 @@ def _host(
     """Run the mission from the first process's arrival to the last one's farewell."""
     robots, clock = bundle.scenario.team.robots, bundle.scenario.clock
     mail = Mailbox(bus)
-    roll = RollCall(mail, robots, RECORDER_AWAY_S if clock.is_realtime else ACCOUNT_S)
+    roll = RollCall(mail, robots, RECORDER_AWAY_S if clock.is_realtime else ACCOUNT_S, world.bases)
     briefings = Briefings(bundle, walls, driver, roll.incarnation)
     open_briefings = partial(bus.answering, topics.config("*"), briefings.answer)
     make = real_time if clock.is_realtime else lock_step

@@ -22,16 +22,24 @@ INDISPENSABLE = frozenset((topics.RADIO, topics.RECORDER))
 
 
 class RollCall:
-    """Presence of radio, recorder and robots. robots: ids of the team.
+    """Presence of radio, recorder, robots and real bases. robots: ids of the team.
 
     recorder_away_s: how long the recorder may be gone from the bus while its process lives [s].
+    bases: robots with a real one.
     """
 
-    def __init__(self, mail: Mailbox, robots: Iterable[int], recorder_away_s: float = ACCOUNT_S) -> None:
+    def __init__(
+        self,
+        mail: Mailbox,
+        robots: Iterable[int],
+        recorder_away_s: float = ACCOUNT_S,
+        bases: Iterable[int] = (),
+    ) -> None:
         self._mail = mail
         self._away_s = {topics.RECORDER: recorder_away_s}
         self._on_return: dict[str, Callable[[], None]] = {}
-        self.everyone = (topics.RADIO, topics.RECORDER, *map(topics.robot_name, robots))
+        own = *map(topics.robot_name, robots), *map(topics.base_name, bases)
+        self.everyone = (topics.RADIO, topics.RECORDER, *own)
         self._present: set[str] = set()
         self._awaited: frozenset[str] = frozenset()
         self._incarnations = dict.fromkeys(self.everyone, 0)

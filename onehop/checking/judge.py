@@ -4,6 +4,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
+from onehop.checking.bases import RealBases
 from onehop.checking.completeness import Completeness, DigestCheck
 from onehop.checking.fault_air import FaultyAir
 from onehop.checking.fault_bit import FaultBit
@@ -114,6 +115,7 @@ def judge(
             ((FAULT_BIT,), FaultyAir(findings, scenario, trace)),
             ((NO_COLLISION,), collisions),
             ((MOTION,), Motion(findings, scenario)),
+            ((MOTION, OWN_VOICE), RealBases(findings, scenario)),
         )
         if asked.intersection(names)
     ]

@@ -1,7 +1,8 @@
 """`motion` and `no-collision`: where bodies are from tick to tick, and what they touch (thesis eq. 3.3).
 
 Walls are those of a polygon map, read from the scenario; those of a map file are left to the contacts
-that the world logs, and to bodies that overlap.
+that the world logs, and to bodies that overlap. A real base moves as reality lets it (bases.py), and
+what it touches of walls and of other real ones nobody here can know.
 """
 
 import math
@@ -31,6 +32,7 @@ class Motion:
         self._findings = findings
         self._period = scenario.clock.period_ns / 1e9
         self._bodies = dict(zip(scenario.team.robots, scenario.bodies, strict=True))
+        self._simulated = frozenset(scenario.team.robots).difference(scenario.bases)
         self._effects = Effects(scenario.clock)
         self._poses: dict[int, Pose] = {}
         self._driven: dict[int, tuple[float, float]] = {}
@@ -45,6 +47,8 @@ class Motion:
         for robot in kidnapped(now.truth):
             self._poses.pop(robot, None)
         for robot, presence in now.present.items():
+            if robot not in self._simulated:
+                continue
             before = self._poses.get(robot)
             if before is not None:
                 self._findings.count(MOTION)
@@ -96,7 +100,11 @@ class Collisions:
         bodies = dict(zip(scenario.team.robots, scenario.bodies, strict=True))
         period_s = scenario.clock.period_ns / 1e9
         self._radius = {robot: body.radius for robot, body in bodies.items()}
-        self._last_drive = {robot: body.max_speed * period_s for robot, body in bodies.items()}
+        self._last_drive = {
+            robot: 0.0 if robot in scenario.bases else body.max_speed * period_s
+            for robot, body in bodies.items()
+        }
+        self._real = frozenset(scenario.bases)
         self._walls = wall_segments(scenario.map)
         self._bodies: dict[int, tuple[float, float]] = {}
         self._contacts = 0
@@ -113,6 +121,8 @@ class Collisions:
             self._bodies.pop(robot, None)
         for robot, presence in now.present.items():  # who has left stays where it was
             self._bodies[robot] = presence.pose.x, presence.pose.y
+        for robot, measured in now.measured.items():  # but a real one, which is carried or rolls on
+            self._bodies[robot] = measured.pose.x, measured.pose.y
         self._judge_bodies(now)
 
     def _judge_contacts(self, now: Snapshot, truth: Truth) -> None:
@@ -134,12 +144,14 @@ class Collisions:
         apart = places[:, None, :] - places[None, :, :]
         gaps = np.hypot(apart[..., 0], apart[..., 1]) - (radii[:, None] + radii[None, :])
         doubt = ROUNDING + drives[:, None] + drives[None, :]
+        real = np.array([robot in self._real for robot in robots])
+        gaps[real[:, None] & real[None, :]] = math.inf
         for a, b in np.argwhere(np.triu(gaps < -doubt, k=1)).tolist():
             pair = robots[a], robots[b]
             self._report_overlap(now, pair, f"the bodies of robots {pair[0]} and {pair[1]} overlap")
         if len(self._walls):
             near = distances_to(self._walls, places).min(axis=1) < radii - ROUNDING - drives
-            for a in np.flatnonzero(near).tolist():
+            for a in np.flatnonzero(near & ~real).tolist():
                 self._report_overlap(now, (robots[a],), f"the body of robot {robots[a]} is in a wall")
 
     def _report_overlap(self, now: Snapshot, robots: tuple[int, ...], what: str) -> None:

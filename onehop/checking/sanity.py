@@ -6,6 +6,7 @@ told as flaws and left out, so that every check can rely on what it gets.
 
 import math
 
+from onehop.contracts.hardware import Measured, Taken
 from onehop.contracts.messages import Action, Inbox, Observation, Truth
 from onehop.contracts.ranges import out_of_range
 from onehop.wire.logged import TickMessage
@@ -22,6 +23,8 @@ def impossible(value: TickMessage, team: frozenset[int]) -> str | None:
         return None if _are_sound(value.pose.x, value.pose.y, value.pose.heading) else "is nowhere"
     if isinstance(value, Inbox) and not all(one.robot in team for one in value.neighbours):
         return "has neighbours who are not in the team"
+    if isinstance(value, Taken):
+        return _wrong_measurement(value.measured)
     return _wrong_truth(value, team) if isinstance(value, Truth) else None
 
 
@@ -31,6 +34,13 @@ def _wrong_action(action: Action, team: frozenset[int]) -> str | None:
         if not members or not team.issuperset(members):
             return "has members who are not in the team"
     return None if _are_sound(action.twist.v, action.twist.w) else "commands what is no motion"
+
+
+def _wrong_measurement(measured: Measured) -> str | None:
+    pose, twist = measured.pose, measured.twist
+    if not _are_sound(pose.x, pose.y, pose.heading, twist.v, twist.w):
+        return "has a base that is nowhere"
+    return None if all(measured.scan >= 0.0) else "has a scan of ranges that are none"
 
 
 def _wrong_truth(truth: Truth, team: frozenset[int]) -> str | None:

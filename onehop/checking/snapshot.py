@@ -9,6 +9,7 @@ from onehop.checking.findings import Exhibit
 from onehop.checking.sanity import impossible
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
+from onehop.contracts.hardware import Measured, Taken
 from onehop.contracts.messages import (
     Action,
     DeliveryStatus,
@@ -31,8 +32,9 @@ ARRIVES = frozenset((DeliveryStatus.DELIVERED, DeliveryStatus.CORRUPTED))
 class Snapshot:
     """A tick. follows: the tick before it was in the log, too.
 
-    present: robots that take part, by id. stopped: those whose processes are stopped. flaws: what is
-    wrong with its messages, each with its channel.
+    measured: what real bases have measured anew, by robot. present: robots that take part, by id.
+    stopped: those whose processes are stopped. flaws: what is wrong with its messages, each with its
+    channel.
     """
 
     tick: int
@@ -42,6 +44,7 @@ class Snapshot:
     inboxes: dict[int, Inbox] = field(default_factory=dict)
     observations: dict[int, Observation] = field(default_factory=dict)
     actions: dict[int, Action] = field(default_factory=dict)
+    measured: dict[int, Measured] = field(default_factory=dict)
     present: dict[int, Presence] = field(default_factory=dict)
     stopped: tuple[int, ...] = ()
     flaws: list[tuple[str, str]] = field(default_factory=list)
@@ -55,6 +58,8 @@ class Snapshot:
             self.observations[robot] = value
         elif isinstance(value, Inbox):
             self.inboxes[robot] = value
+        elif isinstance(value, Taken):
+            self.measured[robot] = value.measured
         elif isinstance(value, RadioRecord):
             self.record = value
         elif isinstance(value, Truth):

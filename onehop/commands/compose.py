@@ -19,6 +19,9 @@ def compose(scenario: Path, out: Path | None) -> int:
         robot = min(bundle.scenario.commands)
         problem = f"robot {robot} is a command of your own, which the image does not have"
         raise InputError(str(scenario), problem, "a team of Python programs")
+    for robot in bundle.scenario.bases:
+        problem = f"robot {robot} has a real base, whose driver is no container of ours"
+        raise InputError(str(scenario), problem, "a simulated team, or onehop run with --bus and --keys")
     folder = Path() if out is None else out.parent
     there = os.path.relpath(scenario.parent, folder)
     programs = os.path.relpath(bundle.folder, scenario.parent)

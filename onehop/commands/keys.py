@@ -27,7 +27,7 @@ def keys(
         _require_known(folder, reissue)
         known = issued = tuple(reissue)
     else:
-        known = names_of(_robots(robots, scenario))
+        known = _names(robots, scenario)
         if not (missing and (folder / AUTHORITY).exists()):
             found(folder)
         issued = tuple(name for name in known if not is_good(folder, name))
@@ -53,13 +53,14 @@ def keys(
     return 0
 
 
-def _robots(count: int | None, scenario: Path | None) -> tuple[int, ...]:
-    if (count is None) == (scenario is None):
+def _names(count: int | None, path: Path | None) -> tuple[str, ...]:
+    if (count is None) == (path is None):
         raise InputError("keys", "for whom?", "either --robots N or --scenario FILE")
-    if scenario is not None:
-        return scenario_file.load(scenario, []).scenario.team.robots
+    if path is not None:
+        scenario = scenario_file.load(path, []).scenario
+        return names_of(scenario.team.robots, scenario.bases)
     assert count is not None
-    return tuple(range(1, count + 1))
+    return names_of(range(1, count + 1))
 
 
 def _require_known(folder: Path, names: list[str]) -> None:

@@ -70,6 +70,7 @@ def _as_json(report: Report) -> dict[str, Any]:
         "ticks": report.ticks,
         "robots": list(report.robots),
         "foreign": list(report.foreign),
+        "bases": list(report.bases),
         "compared": report.compared,
         "divergences": report.divergences,
         "first": None
@@ -91,6 +92,8 @@ def _print(report: Report, period: float, what_if: bool) -> None:
     print(f"{report.ticks} ticks, {_names(report.robots)}: {report.compared} messages compared")
     if report.foreign:
         print(f"no core to run here for {_names(report.foreign)}: what they said is taken from the log")
+    if report.bases:
+        print(f"real base of {_names(report.bases)}: what it measured is taken from the log")
     if report.first is not None:
         print(f"{report.divergences} divergences{' under the changed setting' if what_if else ''}")
         print(f"first: {_sentence(report.first, period)}")

@@ -2,6 +2,7 @@
 
 import contextlib
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -70,9 +71,9 @@ def run(
     )
     search_in(bundle.folder)
     check(bundle.scenario, str(scenario))
-    placement = None if hosts is None else _placed(hosts, driver, bundle)
     if driver == "inline":
         require_programs(bundle.scenario, str(scenario))
+    placement = _placed(hosts or Hosts(), driver, bundle)
     folder = out or _fresh_folder(bundle)
     with contextlib.ExitStack() as page, claimed(folder) as claim:
         shown = None
@@ -116,7 +117,9 @@ def run(
 
 def _placed(hosts: Hosts, driver: str, bundle: Bundle) -> Placement | None:
     """Where the mission's processes are to run. Raises InputError."""
+    bases = bundle.scenario.bases
     if hosts == Hosts():
+        _require_drivers(bases)
         return None
     if driver == "inline":
         raise InputError("--driver inline", "has no bus", "leave --bus, --keys and --remote out")
@@ -124,7 +127,17 @@ def _placed(hosts: Hosts, driver: str, bundle: Bundle) -> Placement | None:
         raise InputError("--bus", "missing", "where the world is to listen, e.g. tls/10.0.0.1:7447")
     robots = bundle.scenario.team.robots
     external = hosts.router == "external"
-    return on_hosts(hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s, robots, external)
+    where = hosts.bus, hosts.keys, hosts.remote, hosts.mission, hosts.wait_s
+    return on_hosts(*where, robots, external, bases)
+
+
+def _require_drivers(bases: Mapping[int, Sequence[str]]) -> None:
+    """Raises InputError for a real base whose driver has no way in: only children get passwords."""
+    for robot, command in bases.items():
+        if not command:
+            what = f"robot {robot} has a real base, and its driver comes to this mission from elsewhere"
+            remedy = "--bus tls/HOST:PORT --keys DIR (docs/hardware.md), or base_command for one here"
+            raise InputError("--bus", what, remedy)
 
 
 def _require_what_is_shown(option: str, driver: str, record: bool) -> None:

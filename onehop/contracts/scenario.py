@@ -116,6 +116,12 @@ class Scenario:
         """Of the robots that are processes of somebody else's making: what starts them."""
         return {one.id: one.command for one in self.robots if one.command}
 
+    @property
+    def bases(self) -> dict[int, tuple[str, ...]]:
+        """Of robots with a real base, ids ascending: what starts its driver here, if anything does."""
+        own = sorted(self.robots, key=lambda one: one.id)
+        return {one.id: one.base_command for one in own if one.is_hardware}
+
     def has_own_programs(self) -> bool:
         """Whether another program than the built-in team drives anybody, or anything is plugged in."""
         programs = {self.program_of(robot)[0] for robot in self.team.robots}
@@ -163,6 +169,12 @@ class Scenario:
         for number, fault in enumerate(self.faults):
             for problem in fault.problems():
                 yield problem._replace(key=f"faults[{number}].{problem.key}")
+            for robot in fault.robots if fault.kind == "kidnap" else ():
+                if robot in self.bases:
+                    what, remedy = f"robot {robot} has a real base", "a robot with a simulated one"
+                    yield Problem(
+                        f"faults[{number}].robots", f"{what}: nobody can put it elsewhere", remedy
+                    )
             strangers = sorted({*fault.robots, *fault.others} - set(robots))
             if strangers:
                 yield Problem(
@@ -189,6 +201,10 @@ class Scenario:
             seen.add(one.id)
             for problem in one.problems():
                 yield problem._replace(key=f"robots[{number}].{problem.key}")
+            if one.is_hardware and not (self.clock.is_realtime and self.clock.speed == 1.0):
+                what = "a real base goes by the wall clock"
+                remedy = 'clock.mode = "realtime" with clock.speed = 1.0 (--clock realtime)'
+                yield Problem(f"robots[{number}].base", what, remedy)
 
     def _path_problems(self) -> Iterator[Problem]:
         """A leader has to see the path from where it starts, and has arrived at its end."""

@@ -23,9 +23,16 @@ def robot_name(robot: int | str) -> str:
     return f"robot-{robot}"
 
 
-def clients(robots: Iterable[int]) -> tuple[str, ...]:
-    """Everyone on the bus of a mission but the world."""
-    return (RADIO, RECORDER, OPERATOR, INJECTOR, *map(robot_name, robots))
+@_remembered
+def base_name(robot: int | str) -> str:
+    """The same of the process that drives a robot's real base: base-3."""
+    return f"base-{robot}"
+
+
+def clients(robots: Iterable[int], bases: Iterable[int] = ()) -> tuple[str, ...]:
+    """Everyone on the bus of a mission but the world. bases: robots that have a real one."""
+    own = *map(robot_name, robots), *map(base_name, bases)
+    return (RADIO, RECORDER, OPERATOR, INJECTOR, *own)
 
 
 def to(name: str, what: str) -> str:
@@ -69,6 +76,12 @@ PLACED = "placed"
 
 HANDED = "handed"
 """World to radio, in real time: what a robot hands to its NIC."""
+
+MEASURED = "measured"
+"""Base to world: its pose, twist and scan as they are now."""
+
+DRIVE = "drive"
+"""World to base: the twist by which it is to drive."""
 
 KILL = "kill"
 """World to robot: a kill by a fault, which the robot's process carries out on itself; world to operator:
@@ -169,6 +182,12 @@ def rx(robot: int | str) -> str:
 def out(robot: int | str) -> str:
     """Log channel of a robot's action of tick k."""
     return f"out/{robot}"
+
+
+@_remembered
+def base(robot: int | str) -> str:
+    """Log channel of the measurement of a real base that the world took in at tick k."""
+    return f"base/{robot}"
 
 
 def wire(key: str) -> str:

@@ -12,6 +12,7 @@ from onehop.contracts import topics
 from onehop.contracts.action_limits import ActionLimits
 from onehop.contracts.briefings import Briefing, robot_briefing
 from onehop.contracts.errors import DecodeError
+from onehop.contracts.hardware import Taken
 from onehop.contracts.messages import (
     Action,
     Inbox,
@@ -148,7 +149,10 @@ class RealTimeRadioPlayer:
 
 
 class WorldPlayer:
-    """The world, with the deaths and faults that no script foresaw taken from the recorded truth."""
+    """The world, with the deaths and faults that no script foresaw taken from the recorded truth.
+
+    What real bases have measured is in the log as it went in.
+    """
 
     def __init__(self, scenario: Scenario, walls: WallMap) -> None:
         self._world = World(scenario, walls)
@@ -162,8 +166,12 @@ class WorldPlayer:
         if truth is None:
             return
         world = self._world
-        if self._actions is not None:
-            world.advance(self._actions, truth.faults)
+        taken = {i: value_in(Taken, tick, topics.base(i)) for i in world.bases}
+        measured = {i: one.measured for i, one in taken.items() if one is not None}
+        if self._actions is None:
+            world.place(measured)
+        else:
+            world.advance(self._actions, truth.faults, measured)
         present = {presence.robot for presence in truth.present}
         for departure in truth.departures:
             if departure.robot not in present:

@@ -57,11 +57,13 @@ class Report:
     """What a re-execution found. flaws: why the log is not all that was said (audit.py).
 
     foreign: robots of somebody else's making, or driven from outside: what they said is taken as it is.
+    bases: robots with a real base: what that measured is taken as it is.
     """
 
     ticks: int = 0
     robots: tuple[int, ...] = ()
     foreign: tuple[int, ...] = ()
+    bases: tuple[int, ...] = ()
     compared: int = 0
     divergences: int = 0
     first: Divergence | None = None
@@ -111,7 +113,7 @@ def replay(
         radio_player = RealTimeRadioPlayer(radio) if in_real_time else RadioPlayer(radio)
         players[topics.RADIO_RECORD] = radio_player.play
         players[topics.TRUTH] = WorldPlayer(original, walls).play
-    report = Report(robots=chosen, foreign=foreign)
+    report = Report(robots=chosen, foreign=foreign, bases=tuple(original.bases))
     audit = Audit(log)
     comparison = _Comparison(report, players, everything=parts and robots is None, torn=log.torn)
     try:
@@ -152,7 +154,7 @@ class _Comparison:
         self._report = report
         self._players = players
         self._everything = everything
-        self._unheard = {topics.LATE, *(topics.out(robot) for robot in report.foreign)}
+        self._unheard = {topics.LATE, *map(topics.out, report.foreign), *map(topics.base, report.bases)}
         self._torn = torn
         self._unjudged: list[Divergence] = []
 

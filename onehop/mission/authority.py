@@ -42,9 +42,9 @@ EARLIER = datetime.timedelta(days=1)
 """How far a host's clock may be behind: a certificate is good from so long before its issue."""
 
 
-def names_of(robots: Iterable[int]) -> tuple[str, ...]:
-    """Everyone who needs a certificate."""
-    return (*SERVERS, *topics.clients(robots))
+def names_of(robots: Iterable[int], bases: Iterable[int] = ()) -> tuple[str, ...]:
+    """Everyone who needs a certificate. bases: robots with a real one."""
+    return (*SERVERS, *topics.clients(robots, bases))
 
 
 def found(keys: Path) -> None:

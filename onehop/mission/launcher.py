@@ -46,8 +46,9 @@ class LaunchPlan:
 
     out: the folder of its output, held by the descriptor `claim` (output_folder.claimed).
     programs: where robots look for programs that are not installed, and where commands are started.
-    commands: of robots that are processes of somebody else's making. placement: where its processes run;
-    None: all here, on a bus of its own on loopback.
+    commands: of robots that are processes of somebody else's making. bases: of robots with a real base,
+    what starts its driver here, if anything. placement: where its processes run; None: all here, on a
+    bus of its own on loopback.
     """
 
     world_arguments: tuple[str, ...]
@@ -57,6 +58,7 @@ class LaunchPlan:
     record: bool
     programs: str
     commands: dict[int, tuple[str, ...]]
+    bases: dict[int, tuple[str, ...]]
     placement: Placement | None = None
 
 
@@ -90,8 +92,9 @@ def plan(
 ) -> LaunchPlan:
     """How to run a mission; see LaunchPlan."""
     scenario = bundle.scenario
-    robots, commands = scenario.team.robots, scenario.commands
-    return LaunchPlan(world_arguments, robots, out, claim, record, bundle.folder, commands, placement)
+    robots, commands, bases = scenario.team.robots, scenario.commands, scenario.bases
+    folder = bundle.folder
+    return LaunchPlan(world_arguments, robots, out, claim, record, folder, commands, bases, placement)
 
 
 def run(
@@ -143,7 +146,8 @@ class _Launch:
         for _ in range(START_ATTEMPTS):
             placement = plan.placement or on_loopback()
             words = plan.out / "stderr"
-            with ProcessGroup(placement, plan.robots, words, plan.programs, plan.commands) as group:
+            team = plan.robots, words, plan.programs, plan.commands, plan.bases
+            with ProcessGroup(placement, *team) as group:
                 ending = self._run_once(group, placement)
             if ending is not None:
                 return self._summary_of(ending, group)
@@ -170,6 +174,9 @@ class _Launch:
         for i in self._plan.robots:
             if group.is_here(topics.robot_name(i)):
                 group.start_robot(i)
+        for i in self._plan.bases:
+            if group.is_here(topics.base_name(i)):
+                group.start_base(i)
         bus = self._connect(group, placement)
         if not isinstance(bus, Bus):
             return bus

@@ -2,7 +2,7 @@
 
 import ipaddress
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,8 +14,14 @@ from onehop.node.startup import DEFAULT_MISSION, certificate, require_keys_for_t
 WAIT_S = 300.0
 """How long a mission waits for processes on other hosts [s], if nothing else is said."""
 
-PROGRAMS = {topics.RADIO: "radio_proxy"}
-"""What is started for a name, if it is no robot's."""
+PROGRAMS = {topics.RADIO: "radio_proxy", "robot": "robot_agent"}
+"""What is started for a name, without its number."""
+
+BASE_DRIVER = "base_driver.py"
+"""What people call the driver of their base who begin with examples/base_driver.py."""
+
+NO_BASES: Mapping[int, Sequence[str]] = {}
+"""Of a team that is all simulated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,14 +53,15 @@ class Placement:
         return ["--connect", self.connect, *self._keys()]
 
     def invitation(self) -> str:
-        """What people are told who have to start the rest."""
+        """What people are told who have to start the rest: one command for each kind of process."""
         prefix = "" if self.mission == DEFAULT_MISSION else f" --mission {self.mission}"
-        what = _command(self.remote[0])
         names = ", ".join(self.remote)
-        return (
-            f"waiting for {names}, {self.wait_s:g} s at most; there: "
-            f"python -m {what} --connect {self.listen}{prefix} --keys DIR"
+        kinds = {name.rstrip("0123456789"): name for name in reversed(self.remote)}
+        there = "; ".join(
+            f"python {_command(name)} --connect {self.listen}{prefix} --keys DIR"
+            for name in reversed(kinds.values())
         )
+        return f"waiting for {names}, {self.wait_s:g} s at most; there: {there}"
 
     def _keys(self) -> list[str]:
         return [] if self.keys is None else ["--keys", str(self.keys)]
@@ -68,11 +75,13 @@ def on_hosts(
     wait_s: float,
     robots: Sequence[int],
     external: bool = False,
+    bases: Mapping[int, Sequence[str]] = NO_BASES,
 ) -> Placement:
     """A mission on a bus that other hosts reach, as options of the command line say it.
 
-    bus: where the world listens, or the router that is there. remote: ids of robots, and "radio", with
-    commas. Raises InputError.
+    bus: where the world listens, or the router that is there. remote: ids of robots, "radio", and names
+    of drivers of real bases, with commas. bases: of robots that have one, what starts its driver here;
+    one that nothing starts here is remote. Raises InputError.
     """
     option = f"--bus {bus}"
     parted = re.fullmatch(r"(tls|tcp)/(.+):(\d+)", bus)
@@ -93,7 +102,10 @@ def on_hosts(
         remedy = f"onehop keys {keys} --reissue world --host {host}"
         raise InputError(option, f"the world's certificate is {good}", remedy)
     connect = f"{TLS}127.0.0.1:{port}" if everywhere else bus
-    return Placement(mission, bus, connect, keys.absolute(), _names(remote, robots), wait_s, external)
+    elsewhere = [*_names(remote, robots, bases)]
+    elsewhere += [topics.base_name(robot) for robot, command in bases.items() if not command]
+    names = tuple(dict.fromkeys(elsewhere))
+    return Placement(mission, bus, connect, keys.absolute(), names, wait_s, external)
 
 
 def _is_everywhere(host: str) -> bool:
@@ -103,18 +115,23 @@ def _is_everywhere(host: str) -> bool:
         return False
 
 
-def _names(remote: str, robots: Sequence[int]) -> tuple[str, ...]:
+def _names(remote: str, robots: Sequence[int], bases: Iterable[int]) -> tuple[str, ...]:
     """Names of those who are on other hosts. Raises InputError."""
-    allowed = [topics.RADIO, *map(str, robots)]
+    of_bases = tuple(map(topics.base_name, bases))
+    allowed = [topics.RADIO, *map(str, robots), *of_bases]
     words = [word.strip() for word in remote.split(",") if word.strip()]
     for word in words:
         if word not in allowed:
             team = ", ".join(allowed)
             raise InputError(f"--remote {remote}", f"{word!r:.40} cannot be elsewhere", f"of {team}")
-    named = (word if word == topics.RADIO else topics.robot_name(word) for word in words)
+    whole = {topics.RADIO, *of_bases}
+    named = (word if word in whole else topics.robot_name(word) for word in words)
     return tuple(dict.fromkeys(named))
 
 
 def _command(name: str) -> str:
-    program = PROGRAMS.get(name)
-    return program or f"robot_agent --id {name.removeprefix(topics.robot_name(''))}"
+    """What is started there: a program of ours, or for a base the driver that somebody has made."""
+    stem, _, number = name.partition("-")
+    if name.startswith(topics.base_name("")):
+        return f"{BASE_DRIVER} --id {number}"
+    return f"-m {PROGRAMS[stem]}" + (f" --id {number}" if number else "")

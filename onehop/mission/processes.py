@@ -84,8 +84,9 @@ class ProcessGroup:
     that ends it when this process dies, and a file in the folder `words` for what it says. If nobody
     said anything the folder goes. What the placement has on other hosts is not started here.
     programs: where robots and radio look for what is not installed. commands: of robots that are not
-    ours; they are started in the folder `programs`, with what ours are told. Raises InputError when this
-    system does not let so many processes work together.
+    ours; they are started in the folder `programs`, with what ours are told. bases: the same of the
+    drivers of real bases. Raises InputError when this system does not let so many processes work
+    together.
     """
 
     def __init__(
@@ -95,13 +96,15 @@ class ProcessGroup:
         words: Path,
         programs: str,
         commands: Mapping[int, Sequence[str]],
+        bases: Mapping[int, Sequence[str]],
     ) -> None:
         self._placement = placement
         self._words = words
         self._programs = programs
         self._search = ["--programs", programs] if programs else []
         self._commands = commands
-        names = topics.clients(robots)
+        self._bases = bases
+        names = topics.clients(robots, bases)
         require_descriptors(len(names))
         self._passwords = make_credentials(names) if placement.keys is None else {}
         self._lifeline, self._keep_open = os.pipe()
@@ -154,17 +157,26 @@ class ProcessGroup:
     def start_robot(self, robot: int) -> None:
         """Raises InputError when its command names nothing that can be started."""
         name = topics.robot_name(robot)
-        arguments = ["--id", str(robot), *self._placement.client_arguments()]
         command = self._commands.get(robot)
         if command is None:
-            self._start(name, "robot_agent", [*arguments, *self._search])
-            return
+            arguments = ["--id", str(robot), *self._placement.client_arguments(), *self._search]
+            self._start(name, "robot_agent", arguments)
+        else:
+            self._start_theirs(name, robot, command, "command")
+
+    def start_base(self, robot: int) -> None:
+        """The driver of a robot's real base. Raises InputError when its command names nothing."""
+        self._start_theirs(topics.base_name(robot), robot, self._bases[robot], "base_command")
+
+    def _start_theirs(self, name: str, robot: int, command: Sequence[str], key: str) -> None:
+        """A process of somebody else's making. Raises InputError."""
+        arguments = ["--id", str(robot), *self._placement.client_arguments()]
         try:
             self._start_command(name, command, arguments, folder=self._programs)
         except OSError as error:
             remedy = "a program in PATH, or ./NAME in the scenario's folder"
             what = f"{command[0]!r:.200} cannot be started ({error.strerror})"
-            raise InputError(f"robots: command of robot {robot}", what, remedy) from None
+            raise InputError(f"robots: {key} of robot {robot}", what, remedy) from None
 
     def _start(self, name: str, module: str, arguments: Sequence[str], *inherited: int) -> None:
         self._start_command(name, [sys.executable, "-m", module], arguments, *inherited)

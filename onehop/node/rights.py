@@ -32,6 +32,8 @@ class Rights:
 def rights(name: str) -> Rights:
     """The table."""
     puts, audience = [topics.by(name, "*")], [topics.heard(topics.WORLD)]
+    if name.startswith(topics.base_name("")):
+        puts = [topics.by(name, topics.MEASURED)]
     if name == topics.RECORDER:
         puts.append(topics.to(topics.OPERATOR, topics.DIGEST))
         audience.append(topics.heard(topics.OPERATOR))

@@ -2,7 +2,7 @@
 
 Messages of a tick arrive in an order that differs from run to run. The journal puts them into the
 canonical order: by tick, then truth, record, rx by robot, obs by robot, out by robot, and in real time
-late. Log and digest are made from that alone.
+late and base by robot. Log and digest are made from that alone.
 """
 
 import hashlib
@@ -16,7 +16,7 @@ from onehop.contracts import topics
 WireMessage: TypeAlias = tuple[str, bytes]
 """A bus key without the mission prefix, and the bytes that crossed it."""
 
-_RANK = {"truth": 0, "radio": 1, "rx": 2, "obs": 3, "out": 4, "late": 5}
+_RANK = {"truth": 0, "radio": 1, "rx": 2, "obs": 3, "out": 4, "late": 5, "base": 6}
 
 
 @lru_cache(maxsize=4096)
@@ -26,10 +26,10 @@ def canonical_rank(key: str) -> tuple[int, int]:
     return _RANK[stem], int(robot or 0)
 
 
-def keys_of(robots: Iterable[int]) -> frozenset[str]:
-    """Every key that the log of a mission of these robots can have."""
+def keys_of(robots: Iterable[int], bases: Iterable[int] = ()) -> frozenset[str]:
+    """Every key that the log of a mission of these robots can have. bases: those with a real one."""
     own = (key(robot) for robot in robots for key in (topics.rx, topics.obs, topics.out))
-    return frozenset((topics.TRUTH, topics.RADIO_RECORD, topics.LATE, *own))
+    return frozenset((topics.TRUTH, topics.RADIO_RECORD, topics.LATE, *own, *map(topics.base, bases)))
 
 
 class Digest:

@@ -54,7 +54,7 @@ class LogFile:
         self.bundle = self._read_bundle()
         scenario = self.bundle.scenario
         self.wire = WireMessages(
-            path, self.contents, keys_of(scenario.team.robots), scenario.clock.period_ns
+            path, self.contents, keys_of(scenario.team.robots, scenario.bases), scenario.clock.period_ns
         )
         self.unreadable = [
             f"it is damaged in the record at byte {error.at} ({error.why})"

@@ -4,12 +4,13 @@ from typing import TypeAlias, TypeVar
 
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
+from onehop.contracts.hardware import Taken
 from onehop.contracts.messages import Action, Inbox, Observation, RadioRecord, Truth
 from onehop.contracts.realtime import Lateness
 from onehop.wire.codec import decode
 from onehop.wire.selection import Selected
 
-TickMessage: TypeAlias = Truth | RadioRecord | Inbox | Observation | Action | Lateness
+TickMessage: TypeAlias = Truth | RadioRecord | Inbox | Observation | Action | Lateness | Taken
 
 M = TypeVar("M", bound=TickMessage)
 
@@ -20,6 +21,7 @@ _KINDS: dict[str, type[TickMessage]] = {
     "obs": Observation,
     "out": Action,
     topics.LATE: Lateness,
+    "base": Taken,
 }
 
 _MAY_BE_LATE = Inbox, Action

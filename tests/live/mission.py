@@ -24,7 +24,7 @@ class Mission:
     """`onehop run` of the small scene in a child, with its log growing in `out`.
 
     shell: what a shell does before, such as `ulimit`. options: of the command. within: what the command
-    is started by, such as `ip netns exec`. environment: added to ours.
+    is started by, such as `ip netns exec`. environment: added to ours. scenario: another one's file.
     """
 
     def __init__(
@@ -35,10 +35,12 @@ class Mission:
         options: Sequence[str] = (),
         within: Sequence[str] = (),
         environment: Mapping[str, str] | None = None,
+        scenario: Path | None = None,
     ) -> None:
         self.out = folder / "out"
-        scenario = folder / "field.toml"
-        scenario.write_text(FIELD)
+        if scenario is None:
+            scenario = folder / "field.toml"
+            scenario.write_text(FIELD)
         command = [
             sys.executable,
             "-m",
@@ -84,8 +86,8 @@ class Mission:
                 parent = int((entry / "stat").read_text().rpartition(")")[2].split()[1]) if words else 0
             except OSError:
                 continue
-            if parent == self.child.pid and "-m" in words:
-                name = words[words.index("-m") + 1]
+            if parent == self.child.pid and len(words) > 1:
+                name = words[words.index("-m") + 1] if "-m" in words else words[1]
                 if name == "robot_agent":
                     name += f" {words[words.index('--id') + 1]}"
                 found[name] = int(entry.name)

@@ -4,6 +4,7 @@ World, radio and programs are the real ones, and so is what puts questions, answ
 together; bus and wall clock are not there. So it takes no longer than it must, and is always the same.
 """
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,8 @@ import numpy as np
 
 from onehop.contracts import topics
 from onehop.contracts.briefings import radio_briefing, robot_briefing
+from onehop.contracts.geometry import Pose, Twist, wrap_angle
+from onehop.contracts.hardware import Measured, Taken
 from onehop.contracts.messages import Outcome, TransmitRequest, Truth
 from onehop.contracts.operation import Punctuality
 from onehop.maps.map_file import load_map
@@ -50,8 +53,16 @@ class _Bus:
         self.readers[topics.by(name, what)] = reader
 
 
+MEASURES = 0.9
+"""How probable it is that a real base has measured anew when a tick ends."""
+
+
 class Jitter:
-    """One mission. seed: of what is a matter of time."""
+    """One mission. seed: of what is a matter of time.
+
+    A real base starts where the scenario has its robot, goes as it is told but for some slip, and its
+    laser says that there is nothing.
+    """
 
     def __init__(self, bundle: Bundle, seed: int = 1) -> None:
         scenario = bundle.scenario
@@ -69,6 +80,15 @@ class Jitter:
         self._recording = RealTimeRecording(bus, bus, bus, scenario.clock.period_ns, self._on_lie)
         self._processes: dict[int, tuple[int, LatestData]] = {}
         self._told: list[WireMessage] = []
+        self._measured = {
+            i: Measured(
+                1, pose, Twist(0.0, 0.0), np.full(scenario.body_of(i).laser_beams, np.inf, "<f4")
+            )
+            for i in scenario.bases
+            for pose in [Pose(*scenario.start.poses[ids.index(i)])]
+        }
+        self._taken = self._measured
+        self._world.place(self._taken)
         for i in ids:
             bus.takers[topics.to(topics.robot_name(i), topics.OBSERVATION)] = self._taker(i)
         self._now_ns = 0
@@ -84,7 +104,8 @@ class Jitter:
             self._let_robots_act(truth)
             answers = self._robots.close(truth, frozenset())
             self._recording.end(truth.tick, answers)
-            self._world.advance(self._hold.filled(truth, answers.actions))
+            self._taken = self._measure()
+            self._world.advance(self._hold.filled(truth, answers.actions), (), self._taken)
             for robot, why in answers.fenced.items():
                 self._world.fence(robot, why)
             outcome = self._world.outcome()
@@ -111,7 +132,22 @@ class Jitter:
         observations = {i: encode(seen) for i, seen in self._world.observe().items()}
         self._robots.ask(truth, observations)
         said = [(topics.obs(i), data) for i, data in observations.items()]
+        for i, measured in self._taken.items():
+            said.append((topics.base(i), encode(Taken(truth.tick, truth.time_ns, measured))))
         self._recording.begin(truth.tick, [(topics.TRUTH, encode(truth)), *said])
+
+    def _measure(self) -> dict[int, Measured]:
+        """Real bases have moved by what they were last told; those that have measured it."""
+        period_s = self._scenario.clock.period_ns / 1e9
+        for i, drive in self._world.drives().items():
+            before = self._measured[i]
+            way, turn = 0.97 * drive.v * period_s, 0.98 * drive.w * period_s
+            x, y, heading = before.pose.x, before.pose.y, before.pose.heading
+            pose = Pose(
+                x + way * math.cos(heading), y + way * math.sin(heading), wrap_angle(heading + turn)
+            )
+            self._measured[i] = Measured(before.number + 1, pose, drive, before.scan)
+        return {i: one for i, one in self._measured.items() if self._rng.random() < MEASURES}
 
     def _close(self, at_ns: int) -> None:
         due, record = self._radio.close(at_ns)

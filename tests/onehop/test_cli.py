@@ -63,6 +63,17 @@ def test_bad_input_is_one_line_on_stderr_and_status_2(
     assert answer.stderr.count("\n") == 1
 
 
+def test_a_real_base_whose_driver_has_no_way_in_is_refused_before_the_mission(tmp_path: Path) -> None:
+    settings = ("--set", 'robots=[{id=2, base="hardware"}]', "--clock", "realtime")
+    answer = onehop("run", str(MAP1), *settings, "--out", str(tmp_path / "out"))
+    assert answer.returncode == 2
+    assert answer.stderr == (
+        "onehop: --bus: robot 2 has a real base, and its driver comes to this mission from elsewhere; "
+        "--bus tls/HOST:PORT --keys DIR (docs/hardware.md), or base_command for one here\n"
+    )
+    assert not (tmp_path / "out").exists()
+
+
 def test_without_a_command_the_help_comes_and_status_2() -> None:
     told, asked = onehop(), onehop("--help")
     assert (told.returncode, asked.returncode) == (2, 0)

@@ -253,13 +253,15 @@ class Motion:
         self.advance(np.empty((0, 3)), np.empty((0, 2)))
         self.wall_gap(0, 0.0, 0.0)
 
-    def advance(self, poses: FloatArray, twists: FloatArray) -> Rows:
+    def advance(self, poses: FloatArray, twists: FloatArray, radii: FloatArray | None = None) -> Rows:
         """Move robots by their twists, (n, 2) [m/s, rad/s], at poses, (n, 3) [m, m, rad], in place.
 
-        |v| must not exceed the body's max_speed. A robot that was stopped gets v = 0. Returns what each
-        robot drove into, (n,): the row of another robot, WALL or NOBODY.
+        |v| must not exceed the body's max_speed. A robot that was stopped gets v = 0. radii: of the
+        bodies, (n,) [m], where they are not their own. Returns what each robot drove into, (n,): the row
+        of another robot, WALL or NOBODY.
         """
-        touched: Rows = _drive(self._period, poses, twists, self.radii, self._cells)
+        radii = self.radii if radii is None else radii
+        touched: Rows = _drive(self._period, poses, twists, radii, self._cells)
         return touched
 
     def wall_gap(self, row: int, x: float, y: float) -> float:

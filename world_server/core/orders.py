@@ -18,12 +18,13 @@ OF_PRESENT = frozenset(("kill", "stop", "continue", "hold", "blind", "slow"))
 class Judge:
     """What orders are held against.
 
-    robots: ids of the team. clearance: what a kidnap's target needs [m].
+    robots: ids of the team. clearance: what a kidnap's target needs [m]. bases: robots with a real one.
     """
 
     robots: tuple[int, ...]
     walls: WallMap
     clearance: float
+    bases: frozenset[int] = frozenset()
 
     def refusal(self, fault: FaultSection, truth: Truth) -> str | None:
         """Why a fault cannot be carried out, given who takes part now; None if it can."""
@@ -39,6 +40,10 @@ class Judge:
                 return f"robots: robot {robot} does not take part any more; {_those(present)}"
             if fault.kind == "continue" and robot not in truth.stopped:
                 return f"robots: robot {robot} is not stopped; {_those(truth.stopped)}"
+            if fault.kind == "kidnap" and robot in self.bases:
+                simulated = _those(one for one in self.robots if one not in self.bases)
+                what = f"robot {robot} has a real base, which nobody can put elsewhere"
+                return f"robots: {what}; {simulated}"
         return self._refused_place(fault) if fault.kind == "kidnap" else None
 
     def _refused_place(self, fault: FaultSection) -> str | None:

@@ -3,7 +3,8 @@
 Every driver calls, in this order and once a tick: truth(), observe(), advance(). Faults, departures and
 returns take effect in the next truth(). A robot that is stopped takes part in none of them, and its
 body and its NIC stay. The body of a robot whose process is gone stays where it was:
-others see it and can touch it, and a restarted process wakes up in it.
+others see it and can touch it, and a restarted process wakes up in it. A robot with a real base is
+where that has measured itself to be (bases.py).
 """
 
 import math
@@ -12,7 +13,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from onehop.contracts.fault_section import FaultSection
-from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.geometry import STANDSTILL, Pose, Twist
+from onehop.contracts.hardware import Measured
 from onehop.contracts.messages import (
     Action,
     Contact,
@@ -27,13 +29,14 @@ from onehop.contracts.messages import (
 from onehop.contracts.scenario import Scenario
 from onehop.contracts.team import Status
 from onehop.maps.walls import WallMap
+from world_server.core.bases import Bases
 from world_server.core.contacts import ContactDetector
 from world_server.core.faults import Faults
 from world_server.core.kidnapping import landing, require_free_targets
 from world_server.core.laser import Lasers
 from world_server.core.late_actions import LateActions
 from world_server.core.mission_events import EventDetector
-from world_server.core.motion import Motion
+from world_server.core.motion import Motion, Rows
 from world_server.core.orders import Judge
 from world_server.core.placement import start_poses
 from world_server.core.referee import Referee, TickSummary
@@ -41,6 +44,9 @@ from world_server.core.sensor_noise import sensor_noise
 
 KILLED = "killed by a fault"
 RESTARTED = "restarted by a fault"
+
+NOTHING_MEASURED: Mapping[int, Measured] = {}
+"""Of a team without real bases."""
 
 _AT_REST = (0.0, 0.0)
 """v [m/s] and w [rad/s] of a robot that was told nothing, or is held."""
@@ -58,13 +64,15 @@ class World:
         self._poses = start_poses(scenario, walls)
         self._walls, self._inflation = walls, scenario.planner.inflation
         require_free_targets(scenario.faults, walls, self._inflation)
-        self._judge = Judge(self._robots, walls, self._inflation)
+        self.bases = Bases(scenario, walls)
+        self._judge = Judge(self._robots, walls, self._inflation, frozenset(self.bases))
         self._twists = np.zeros((len(self._robots), 2))
         self._lasers = Lasers(walls, bodies)
         self._noise = {
             robot: noise
             for robot, body in zip(self._robots, bodies, strict=True)
-            if (noise := sensor_noise(scenario.seed, robot, body)) is not None
+            if robot not in self.bases
+            and (noise := sensor_noise(scenario.seed, robot, body)) is not None
         }
         self._motion = Motion(walls, bodies, self._period_ns)
         self._contact_detector = ContactDetector(self._robots, self._motion)
@@ -129,6 +137,11 @@ class World:
         truth = self.truth()
         tick, time_ns, observers = truth.tick, truth.time_ns, running(truth)
         scans = self._lasers.scans(self._poses, [self._row[one.robot] for one in observers])
+        if self.bases:
+            scans = [
+                self.bases.scan(one.robot, self._poses) if one.robot in self.bases else scan
+                for one, scan in zip(observers, scans, strict=True)
+            ]
         for one, scan in zip(observers, scans, strict=True):
             if one.robot in truth.blind:
                 scan[:] = math.inf
@@ -145,22 +158,62 @@ class World:
         noise = self._noise.get(one.robot)
         return one.pose if noise is None else noise.pose(one.pose)
 
-    def advance(self, actions: Mapping[int, Action], by_hand: Sequence[FaultSection] = ()) -> None:
+    def place(self, measured: Mapping[int, Measured]) -> None:
+        """Put the robots with real bases where these are, before the first truth."""
+        self.bases.place(measured, self._poses, self._twists)
+        self._present_now = None
+
+    def no_start(self) -> str | None:
+        """Why the team cannot start where its real bases stand, in one line; None if it can."""
+        return self.bases.no_start(self._poses)
+
+    def drives(self) -> dict[int, Twist]:
+        """By what real bases are to drive from now on: what would have moved a simulated robot.
+
+        Who is held, stopped or not in the mission rests at once.
+        """
+        rests = self._faults.held | self._faults.stopped
+        return {
+            robot: self.bases.command(robot)
+            if self._present[robot] and robot not in rests
+            else STANDSTILL
+            for robot in self.bases
+        }
+
+    def advance(
+        self,
+        actions: Mapping[int, Action],
+        by_hand: Sequence[FaultSection] = (),
+        measured: Mapping[int, Measured] = NOTHING_MEASURED,
+    ) -> None:
         """Let one period pass. A present robot without an action stands still.
 
-        by_hand: faults that begin with the next tick, beside those of the script. Actions of robots that
+        by_hand: faults that begin with the next tick, beside those of the script. measured: by real
+        bases, since the last tick; one without stands where it was. Actions of robots that
         are not present or are stopped, or of an earlier incarnation, are ignored. Raises ValueError for
         a twist that is not a number: a broken robot, not a state of the world.
         """
         faults = self._faults
         self._take_over(self._late_actions.effective(actions, self.tick, faults.delays, faults.stopped))
-        touched = self._motion.advance(self._poses, self._twists)
+        if self.bases:
+            touched = self._advance_with_bases(measured)
+        else:
+            touched = self._motion.advance(self._poses, self._twists)
         self._contacts = self._contact_detector.onsets(self._poses, touched)
         self._collisions += len(self._contacts)
         self.tick += 1
         self._begin_tick(by_hand)
         if self._outcome is None:
             self._outcome = self._referee.judge(self._tick_summary(), self._faults.will_restart)
+
+    def _advance_with_bases(self, measured: Mapping[int, Measured]) -> Rows:
+        """Move who is simulated, with real bodies where they were; then these are where they are."""
+        bases, poses, twists = self.bases, self._poses, self._twists
+        bases.set_off(twists)
+        touched = self._motion.advance(poses, twists, bases.radii(poses))
+        bases.place(measured, poses, twists)
+        bases.touch(poses, touched)
+        return touched
 
     def refusal(self, fault: FaultSection) -> str | None:
         """Why a fault that is ordered by hand cannot be carried out; None if it can."""
@@ -225,7 +278,10 @@ class World:
     def _forget(self, robot: int) -> None:
         """Drop what the last process of a robot said and did."""
         self._present_now = None
-        self._twists[self._row[robot]] = 0.0
+        if robot in self.bases:
+            self.bases.rest(robot)
+        else:
+            self._twists[self._row[robot]] = 0.0
         self._transmit_requests.pop(robot, None)
         self._statuses.pop(robot, None)
         self._faults.forget(robot)

@@ -17,8 +17,9 @@ from onehop.wire.codec import encode
 from world_server.core.command_hold import CommandHold
 from world_server.core.world import World
 from world_server.fault_orders import FaultOrders
-from world_server.mailbox import Mailbox
+from world_server.mailbox import Mailbox, MissionBrokenError
 from world_server.progress import ProgressReports
+from world_server.realtime.bases import RealTimeBases
 from world_server.realtime.faults import RealTimeFaults
 from world_server.realtime.radio import RealTimeRadio
 from world_server.realtime.recording import RealTimeRecording
@@ -42,6 +43,7 @@ class RealTime:
     hold: CommandHold
     radio: RealTimeRadio
     robots: RealTimeRobots
+    bases: RealTimeBases
     faults: RealTimeFaults
     orders: FaultOrders
     recording: RealTimeRecording
@@ -50,8 +52,12 @@ class RealTime:
 
     def run(self) -> Outcome:
         """Tick until the mission has an outcome. Raises MissionBrokenError."""
+        self.bases.await_all()
         self.schedule.start_s = time.monotonic() + LEAD_S
         self._wait_until(self.schedule.due_s(0))
+        self.world.place(self.bases.take())
+        if (no_start := self.world.no_start()) is not None:
+            raise MissionBrokenError(no_start)
         self._begin(None)
         outcome = None
         while outcome is None:
@@ -96,9 +102,11 @@ class RealTime:
         answers = self.robots.close(truth, self.faults.starting | failed.keys())
         self.unanswered += answers.unanswered
         self.recording.end(truth.tick, answers)
-        self.world.advance(self.hold.filled(truth, answers.actions), self.orders.take(self.world))
-        for robot, why in sorted({**answers.fenced, **failed}.items()):
+        actions, by_hand = self.hold.filled(truth, answers.actions), self.orders.take(self.world)
+        self.world.advance(actions, by_hand, self.bases.take())
+        for robot, why in sorted({**self.bases.fenced(truth), **answers.fenced, **failed}.items()):
             self.world.fence(robot, why)
+        self.bases.drive(truth.tick, self.world.drives())
         self.orders.confirm(self.world)
         self.progress.report(truth, answers.actions, self.punctuality)
 
@@ -110,6 +118,7 @@ class RealTime:
         observations = {robot: encode(seen) for robot, seen in self.world.observe().items()}
         self.robots.ask(truth, observations)
         said = [(topics.obs(robot), seen) for robot, seen in observations.items()]
+        said += self.bases.record(truth.tick, truth.time_ns)
         self.recording.begin(truth.tick, [(topics.TRUTH, encode(truth)), *said])
         if late_s is not None:
             self.recording.note_late(truth.tick, late_s)

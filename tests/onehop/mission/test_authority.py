@@ -3,6 +3,7 @@
 import datetime
 import json
 import os
+import re
 import shutil
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from onehop.mission import authority
 from onehop.node.certificates import own_certificate
 from onehop.node.identity import session_id
 from onehop.node.rights import rights
+from tests.onehop.scenes import FIELD
 
 NAMES = ("world", "router", "radio", "recorder", "operator", "injector", "robot-1", "robot-2")
 
@@ -165,3 +167,18 @@ def test_a_router_of_its_own_gives_everyone_the_same_rights(
     }
     assert puts == {f"onehop/{key}" for key in rights("robot-2").puts}
     assert os.path.exists(json.loads(config.get_json("transport/link/tls/listen_private_key")))
+
+
+def test_the_driver_of_a_base_has_a_certificate_and_may_say_what_it_measures(tmp_path: Path) -> None:
+    scenario = tmp_path / "real.toml"
+    scenario.write_text(f'{FIELD}[clock]\nmode = "realtime"\n[[robots]]\nid = 3\nbase = "hardware"\n')
+    folder = tmp_path / "keys"
+    assert command(folder, None, scenario, [], 30, "onehop", False, [], False) == 0
+    assert own_certificate(folder, "base-3").name == "base-3"
+    assert not (folder / "base-2").exists()
+    may = rights("base-3")
+    assert (may.puts, may.hears) == (("from/base-3/measured",), "to/base-3/**")
+    assert (may.asks, may.announces) == ("config/base-3", "alive/base-3")
+    granted = json.loads(re.sub(r"//.*", "", (folder / "router" / "zenohd.json5").read_text()))
+    rules = {one["id"]: one["key_exprs"] for one in granted["access_control"]["rules"]}
+    assert rules["base-3 0"] == ["onehop/from/base-3/measured"]

@@ -104,3 +104,11 @@ def test_the_scenario_is_found_from_where_the_file_is_written(tmp_path: Path) ->
     assert compose(scenario, tmp_path / "deep" / "compose.yaml") == 0
     file = yaml.safe_load((tmp_path / "deep" / "compose.yaml").read_text())
     assert "..:/mission:ro" in file["services"]["world"]["volumes"]
+
+
+def test_a_mission_with_a_real_base_is_refused_in_one_line(tmp_path: Path) -> None:
+    real = '[clock]\nmode = "realtime"\n[[robots]]\nid = 3\nbase = "hardware"\n'
+    with pytest.raises(
+        InputError, match="robot 3 has a real base, whose driver is no container of ours"
+    ):
+        written(tmp_path, real)

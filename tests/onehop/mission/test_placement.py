@@ -61,9 +61,24 @@ def test_everyone_is_told_what_it_needs(keys: Path) -> None:
     assert placement.client_arguments() == ["--connect", BUS, "--keys", str(keys)]
     assert placement.invitation() == (
         "waiting for radio, robot-3, 60 s at most; there: "
-        f"python -m radio_proxy --connect {BUS} --mission m --keys DIR"
+        f"python -m radio_proxy --connect {BUS} --mission m --keys DIR; "
+        f"python -m robot_agent --id 3 --connect {BUS} --mission m --keys DIR"
     )
     assert placed(keys, "tls/base.example:1").connect == "tls/base.example:1"
     for everywhere in ("0.0.0.0", "[::]"):
         assert placed(keys, f"tls/{everywhere}:7447").connect == "tls/127.0.0.1:7447"
     assert "--start-s" not in placed(keys, remote="").world_arguments()
+
+
+def test_the_driver_of_a_base_comes_from_elsewhere_unless_something_starts_it_here(keys: Path) -> None:
+    bases = {2: ("python", "driver.py"), 4: ()}
+    placement = on_hosts(BUS, keys, "", "onehop", 60.0, (1, 2, 3, 4), bases=bases)
+    assert placement.remote == ("base-4",)
+    assert placement.invitation() == (
+        "waiting for base-4, 60 s at most; there: "
+        f"python base_driver.py --id 4 --connect {BUS} --keys DIR"
+    )
+    sent_away = on_hosts(BUS, keys, "base-2,3", "onehop", 60.0, (1, 2, 3, 4), bases=bases)
+    assert sent_away.remote == ("base-2", "robot-3", "base-4")
+    with pytest.raises(InputError, match="cannot be elsewhere; of radio, 1, 2, 3, 4, base-2, base-4"):
+        on_hosts(BUS, keys, "base-3", "onehop", 60.0, (1, 2, 3, 4), bases=bases)

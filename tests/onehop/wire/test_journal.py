@@ -14,6 +14,9 @@ TICK: list[WireMessage] = [
     ("obs/2", b"o"),
     ("obs/10", b"o"),
     ("out/2", b"a"),
+    ("late", b"l"),
+    ("base/2", b"m"),
+    ("base/10", b"m"),
 ]
 
 
