@@ -71,6 +71,12 @@ SHORT_S = 20.0
 WARM_S = 180.0
 """From when on a process is warm [s], at most a fifth of its time."""
 
+SLOWEST = 0.01
+"""Least speed that a scenario may give to a leader [m/s]."""
+
+MOST_MINUTES = 70
+"""At that speed, on a way of 23 m, the team is still under way when half of this is over."""
+
 LAUNCHER = "launcher"
 
 
@@ -154,6 +160,8 @@ def main() -> int:
     parser.add_argument("--robots", type=int, default=3)
     parser.add_argument("--every", type=float, default=30.0, help="seconds between two samples")
     options = parser.parse_args()
+    if not 0 < options.minutes <= MOST_MINUTES:
+        parser.error(f"--minutes {options.minutes:g}: more than 0, and {MOST_MINUTES} at most")
     half_s, every_s = 30.0 * options.minutes, min(options.every, options.minutes)
 
     watch = Watch(every_s)
@@ -180,7 +188,7 @@ SHORT = {"leader_speed": 0.5, "speed": 2.0, "limit_s": SHORT_S}
 
 def _long(robots: int, wall_s: float) -> dict[str, object]:
     """One mission for so long, in which a robot is killed and comes again."""
-    room = ROOM.format(robots=robots, leader_speed=8.0 / wall_s, speed=1.0, limit_s=wall_s)
+    room = ROOM.format(robots=robots, leader_speed=max(SLOWEST, 8.0 / wall_s), speed=1.0, limit_s=wall_s)
     times = [at_s * KILL_EVERY_S for at_s in range(1, int(wall_s / KILL_EVERY_S))]
     return _mission(room + "".join(KILLS.format(at_s=at_s, again_s=at_s + 10.0) for at_s in times))
 
