@@ -31,7 +31,8 @@ def main() -> int:
         startup.calm_garbage_collector()
         if briefing.speed:
             startup.be_on_time()
-            realtime = RealTimeRadio(bus, radio, briefing.robots, briefing.speed)
+            speed, period_ns = briefing.speed, briefing.period_ns
+            realtime = RealTimeRadio(bus, radio, briefing.robots, speed, period_ns)
             bus.announce(topics.RADIO)
             return realtime.serve()
         return _serve(bus, radio)

@@ -4,6 +4,7 @@ Observations that have come meanwhile are passed over; nothing from the radio is
 went into it, so that the step can be re-executed from the log.
 """
 
+from collections import deque
 from collections.abc import Callable
 
 from onehop.contracts.messages import Observation, percept
@@ -11,6 +12,9 @@ from onehop.contracts.realtime import Acted, Heard
 from onehop.programs.host import Host
 from onehop.wire.codec import decode, encode
 from onehop.wire.heard import inbox_of
+
+KEPT_ANSWERS = 16
+"""Answers that are kept to be said again: more than there are questions on their way at a time."""
 
 
 class LatestData:
@@ -26,6 +30,7 @@ class LatestData:
         self._steps = 0
         self._observation: bytes | None = None
         self._heard: list[Heard] = []
+        self._said: deque[bytes] = deque(maxlen=KEPT_ANSWERS)
 
     def on_observation(self, data: bytes) -> None:
         """The world's word; an older one that has not been used is of no use any more."""
@@ -49,4 +54,11 @@ class LatestData:
         self._observation, self._heard = None, []
         said = self._host.step(percept(seen, inbox))
         self._steps += 1
-        self._put(encode(Acted(self._steps, inbox.heard, said)))
+        acted = encode(Acted(self._steps, inbox.heard, said))
+        self._said.append(acted)
+        self._put(acted)
+
+    def say_again(self) -> None:
+        """The bus was gone: answers may be lost. The world knows which it has."""
+        for acted in self._said:
+            self._put(acted)

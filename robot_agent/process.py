@@ -47,7 +47,11 @@ def main() -> int:
 
 REUNION_S = 10.0
 """How long a process that was stopped, or in real time cut off, looks for the world [s] when its session
-has been given up. Without having been told of a stop it joins again, as one that knows nothing."""
+has been given up."""
+
+WAKE_S = 1.0
+"""How long it then waits for the world to say that it is still in the mission [s], if it was not told
+of a stop: all have lost the bus, with its router. Else it joins again, as one that knows nothing."""
 
 
 def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
@@ -99,16 +103,19 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
         elif what == topics.END:
             return 0
         elif (what, data) == (topics.alive(topics.WORLD), GONE):
-            if not ((will_be_stopped or latest.is_used) and _finds_world(bus)):
+            there, wake = (topics.alive(topics.WORLD), ALIVE), (topics.WAKE, b"")
+            found = _first(bus, REUNION_S, there, wake) if will_be_stopped or latest.is_used else None
+            if found is None:
                 return startup.WORLD_IS_GONE
-            if not will_be_stopped:
+            if not (will_be_stopped or found == wake or _first(bus, WAKE_S, wake)):
                 return None
+            latest.say_again()
 
 
-def _finds_world(bus: Bus) -> bool:
-    """Whether the world comes back in time; what it says before is lost, and it will ask again."""
-    deadline = time.monotonic() + REUNION_S
+def _first(bus: Bus, within_s: float, *wanted: tuple[str, bytes]) -> tuple[str, bytes] | None:
+    """The first of these that comes in time; what else is said is lost, and the world will ask again."""
+    deadline = time.monotonic() + within_s
     while (received := bus.receive_by(deadline)) is not None:
-        if received == (topics.alive(topics.WORLD), ALIVE):
-            return True
-    return False
+        if received in wanted:
+            return received
+    return None

@@ -74,6 +74,7 @@ def real_time(parts: Parts) -> RealTime:
     return RealTime(
         parts.world,
         mail,
+        roll,
         schedule,
         CommandHold(parts.scenario),
         radio,

@@ -78,7 +78,13 @@ def _host(
     """Run the mission from the first process's arrival to the last one's farewell."""
     robots, clock = bundle.scenario.team.robots, bundle.scenario.clock
     mail = Mailbox(bus)
-    roll = RollCall(mail, robots, RECORDER_AWAY_S if clock.is_realtime else ACCOUNT_S, world.bases)
+    roll = RollCall(
+        mail,
+        robots,
+        recorder_away_s=RECORDER_AWAY_S if clock.is_realtime else ACCOUNT_S,
+        bases=world.bases,
+        router_may_go=clock.is_realtime and not bus.is_router,
+    )
     briefings = Briefings(bundle, walls, driver, roll.incarnation)
     open_briefings = partial(bus.answering, topics.config("*"), briefings.answer)
     make = real_time if clock.is_realtime else lock_step

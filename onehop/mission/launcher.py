@@ -185,8 +185,8 @@ class _Launch:
         way_in = entrance(placement, group.identity(topics.INJECTOR), os.getpid())
         running = Running(way_in, lambda pace: bus.tell_self(topics.PACE, encode(pace)))
         with bus, published(self._plan.out, way_in), self._attend(running):
-            remote = placement.remote
-            session = OperatorSession(group, bus, self._stop, self._show, self._tell, remote)
+            people = (self._stop, self._show, self._tell)
+            session = OperatorSession(group, bus, *people, placement.remote, placement.external)
             ending = session.until_end()
             leave_s = 0.0 if ending.outcome.outcome == "aborted" else LEAVE_S
             group.end(leave_s)  # while the router can answer

@@ -21,6 +21,9 @@ POLL_S = 0.1
 GONE_S = 1.0
 """How long the world may be gone from the bus, while its process runs, until it is given up [s]."""
 
+ROUTER_GONE_S = 12.0
+"""The same where the router is a process of its own [s]: in real time it may come back for 10 s."""
+
 DIGEST_S = 30.0
 """How long the recorder may take for the end of the log [s]."""
 
@@ -75,7 +78,8 @@ class OperatorSession:
     """One mission from the moment at which its bus is there.
 
     stop: whether people want it to end. show: takes progress, some times a second. tell: takes lines for
-    people. remote: names of processes on other hosts, of which people are told.
+    people. remote: names of processes on other hosts, of which people are told. external: whether the
+    router is a process of its own.
     """
 
     def __init__(
@@ -86,7 +90,9 @@ class OperatorSession:
         show: Callable[[Progress], None],
         tell: Callable[[str], None],
         remote: Sequence[str] = (),
+        external: bool = False,
     ) -> None:
+        self._external = external
         self._group = group
         self._bus = bus
         self._stop = stop
@@ -188,8 +194,9 @@ class OperatorSession:
 
     def _given_up(self, now: float) -> str | None:
         """Why a world whose process runs is not waited for any more."""
-        if now - self._gone_s > GONE_S:
-            return "the world process is gone from the bus: stopped, or cut off"
+        if now - self._gone_s > (ROUTER_GONE_S if self._external else GONE_S):
+            who = "the router, or the world process," if self._external else "the world process"
+            return f"{who} is gone from the bus: stopped, or cut off"
         if self._stop.number is not None and now - self._stop.at_s > STOP_S:
             return f"{STOPPED}, and the world did not end the mission"
         return None

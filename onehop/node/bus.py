@@ -79,10 +79,16 @@ class Bus:
     """One session on the bus of one mission. Use as a context manager: leaving without close hangs."""
 
     def __init__(
-        self, session: zenoh.Session, mission: str, name: str, gate: Gate | None = None
+        self,
+        session: zenoh.Session,
+        mission: str,
+        name: str,
+        gate: Gate | None = None,
+        is_router: bool = False,
     ) -> None:
         self._session = session
         self._gate = gate
+        self.is_router = is_router
         self._mission = mission
         heard = self._key(topics.heard(name))
         self._prefix = len(heard.removesuffix("**"))
@@ -283,7 +289,7 @@ class Bus:
 def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | None = None) -> Bus:
     """The world's session. credentials: passwords by name; without them anyone may say anything."""
     if credentials is None:
-        return Bus(_open_router(endpoint, {}), mission, topics.WORLD)
+        return Bus(_open_router(endpoint, {}), mission, topics.WORLD, is_router=True)
     with tempfile.TemporaryFile("w") as dictionary:  # it has no name that could outlive this process
         dictionary.writelines(f"{name}:{word}\n" for name, word in credentials.items())
         dictionary.flush()
@@ -295,7 +301,9 @@ def open_router(mission: str, endpoint: str, credentials: Mapping[str, str] | No
         sessions = {name: session_id(word) for name, word in credentials.items()}
         rights = access_control(mission, sessions, "usernames")
         settings = {"transport/auth/usrpwd": login, "access_control": rights}
-        return Bus(_open_router(endpoint, settings), mission, topics.WORLD, Gate(sessions))
+        return Bus(
+            _open_router(endpoint, settings), mission, topics.WORLD, Gate(sessions), is_router=True
+        )
 
 
 def open_certified_router(
@@ -306,7 +314,7 @@ def open_certified_router(
     rights = access_control(mission, sessions, "cert_common_names")
     settings = {**certificate.settings("listen"), "access_control": rights}
     gate = Gate(sessions, certified=True)
-    return Bus(_open_router(endpoint, settings), mission, topics.WORLD, gate)
+    return Bus(_open_router(endpoint, settings), mission, topics.WORLD, gate, is_router=True)
 
 
 def _open_router(endpoint: str, settings: Mapping[str, Any]) -> zenoh.Session:

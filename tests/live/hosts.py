@@ -15,6 +15,8 @@ import zenoh
 
 from onehop.mission import authority
 from onehop.mission.processes import free_endpoint
+from onehop.mission.router_file import write_router_file
+from onehop.node.certificates import own_certificate
 from onehop.node.identity import KEY, Certificate, session_id
 from tests.live.mission import DEADLINE_S
 
@@ -68,6 +70,52 @@ def stranger(
     return zenoh.open(config)
 
 
+ROUTER = """
+import sys, zenoh
+with zenoh.open(zenoh.Config.from_file(sys.argv[1])):
+    print("open", flush=True)
+    sys.stdin.read()
+"""
+
+
+class Router:
+    """A router with the configuration of `onehop keys` and Zenoh's own threads, as zenohd has them."""
+
+    def __init__(self, keys: Path, endpoint: str) -> None:
+        names = authority.names_of(range(1, 7))
+        self._path = write_router_file(own_certificate(keys, authority.ROUTER), "onehop", names)
+        self._path.write_text(self._path.read_text().replace("tls/[::]:7447", endpoint))
+        self._child = self._started()
+
+    def __enter__(self) -> "Router":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.kill()
+
+    def _started(self) -> "subprocess.Popen[str]":
+        child = subprocess.Popen(
+            [sys.executable, "-c", ROUTER, self._path.name],
+            cwd=self._path.parent,
+            env={key: value for key, value in os.environ.items() if key != "ZENOH_RUNTIME"},
+            text=True,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        )
+        assert child.stdout is not None
+        assert child.stdout.readline() == "open\n"
+        return child
+
+    def kill(self) -> None:
+        """End it outright (SIGKILL)."""
+        self._child.kill()
+        self._child.communicate(timeout=DEADLINE_S)
+
+    def start_again(self) -> None:
+        """Another process in its place."""
+        self._child = self._started()
+
+
 class Host:
     """A network namespace with an address of its own. number: last part of its address."""
 
@@ -79,6 +127,15 @@ class Host:
         """A Python program on this host."""
         command = ["ip", "netns", "exec", self.namespace, sys.executable, "-m", *words]
         return subprocess.Popen(command, text=True, **options)
+
+    @contextlib.contextmanager
+    def cut(self) -> Iterator[None]:
+        """Its cable is pulled meanwhile."""
+        _ip("-n", self.namespace, "link", "set", "eth0", "down")
+        try:
+            yield
+        finally:
+            _ip("-n", self.namespace, "link", "set", "eth0", "up")
 
 
 @contextlib.contextmanager

@@ -6,7 +6,6 @@ that nobody but the test starts.
 
 import contextlib
 import json
-import os
 import re
 import signal
 import subprocess
@@ -21,13 +20,10 @@ import zenoh
 
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.messages import Truth
-from onehop.mission import authority
 from onehop.mission.injection import inject
 from onehop.mission.rendezvous import way_into
-from onehop.mission.router_file import write_router_file
-from onehop.node.certificates import own_certificate
 from onehop.wire.codec import decode
-from tests.live.hosts import LINK, ended, hosts, made_keys, stranger, tls_endpoint
+from tests.live.hosts import LINK, Router, ended, hosts, made_keys, stranger, tls_endpoint
 from tests.live.mission import DEADLINE_S, Mission, contents, gone, proven
 from tests.onehop.scenes import field, log_of
 
@@ -147,40 +143,12 @@ def test_a_mission_logs_the_same_bytes_whatever_rogue_clients_do(tmp_path: Path,
     assert {lost["why"] for lost in summary["lost"]} == {"did not arrive"}
 
 
-ROUTER = """
-import sys, zenoh
-with zenoh.open(zenoh.Config.from_file(sys.argv[1])):
-    print("open", flush=True)
-    sys.stdin.read()
-"""
-
-
-@contextlib.contextmanager
-def router(keys: Path, endpoint: str) -> Iterator[None]:
-    """A router with the configuration of `onehop keys` and Zenoh's own threads, as zenohd has them."""
-    names = authority.names_of(range(1, 7))
-    path = write_router_file(own_certificate(keys, authority.ROUTER), "onehop", names)
-    path.write_text(path.read_text().replace("tls/[::]:7447", endpoint))
-    child = subprocess.Popen(
-        [sys.executable, "-c", ROUTER, path.name],
-        cwd=path.parent,
-        env={key: value for key, value in os.environ.items() if key != "ZENOH_RUNTIME"},
-        text=True,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-    )
-    with ended(child):
-        assert child.stdout is not None
-        assert child.stdout.readline() == "open\n"
-        yield
-
-
 def test_with_a_router_of_its_own_the_bytes_are_the_same(tmp_path: Path, keys: Path) -> None:
     """Twice, since the router is there before the world is, and after it."""
     inline = log_of(field(tmp_path, *SHORT), tmp_path / "inline.mcap")
     endpoint = tls_endpoint()
     options = ("--bus", endpoint, "--keys", str(keys), "--router", "external")
-    with router(keys, endpoint):
+    with Router(keys, endpoint):
         ended_so = [Mission(tmp_path, *SHORT, options=options).finish_and_say() for _ in range(2)]
     assert [summary["digest"] for summary, _ in ended_so] == [inline] * 2, ended_so
 

@@ -75,7 +75,8 @@ class Jitter:
         bus: Any = _Bus()
         self._bus = bus
         ids = scenario.team.robots
-        roll: Any = type("Roll", (), {"present": {topics.robot_name(i) for i in ids}})
+        names = {topics.robot_name(i) for i in ids}
+        roll: Any = type("Roll", (), {"present": names, "when_seen_again": lambda _: None})
         self._robots = RealTimeRobots(bus, bus, roll, ids, 1e9, self._hand_over)
         self._recording = RealTimeRecording(bus, bus, bus, scenario.clock.period_ns, self._on_lie)
         self._processes: dict[int, tuple[int, LatestData]] = {}

@@ -25,9 +25,13 @@ from world_server.realtime.radio import RealTimeRadio
 from world_server.realtime.recording import RealTimeRecording
 from world_server.realtime.robots import RealTimeRobots
 from world_server.realtime.schedule import Schedule
+from world_server.roll_call import RollCall
 
 LEAD_S = 0.2
 """From the arrival of the last process to the first tick [s]."""
+
+REUNION_S = 10.0
+"""How long a router of its own, and all who were connected to it, may take to come back [s]."""
 
 LAST_ACCOUNT_S = 2.0
 """How long the radio may take for the last tick, when the mission is over [s]."""
@@ -39,6 +43,7 @@ class RealTime:
 
     world: World
     mail: Mailbox
+    roll: RollCall
     schedule: Schedule
     hold: CommandHold
     radio: RealTimeRadio
@@ -63,6 +68,7 @@ class RealTime:
         while outcome is None:
             truth = self.world.truth()
             self._wait_until(self.schedule.due_s(truth.tick + 1))
+            self._wait_for_router()
             late_s = self.schedule.begin(truth.tick + 1, time.monotonic())
             self._end(truth)
             outcome = self.world.outcome()
@@ -95,6 +101,17 @@ class RealTime:
 
     def _wait_until(self, due_s: float) -> None:
         self.mail.wait(lambda: False, due_s - time.monotonic())
+
+    def _wait_for_router(self) -> None:
+        """Without its router nobody can see or do anything: the tick lasts until all are back."""
+        if self.roll.settle():
+            return
+        self.mail.wait(self.roll.settle, REUNION_S)
+        if self.roll.router_is_gone:
+            raise MissionBrokenError(f"the router is gone, and did not come back within {REUNION_S:g} s")
+        self.roll.give_up()
+        self.radio.excuse()
+        self.robots.excuse()
 
     def _end(self, truth: Truth) -> None:
         """The tick of this truth ends with what has been given."""

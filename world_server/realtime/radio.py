@@ -1,6 +1,7 @@
 """The radio as the world speaks to it in real time: nobody waits for an answer."""
 
 import time
+from collections import deque
 from collections.abc import Callable
 
 from onehop.contracts import topics
@@ -35,7 +36,9 @@ class RealTimeRadio:
         self._put_placed = bus.publisher(topics.to(topics.RADIO, topics.PLACED))
         self._put_handed = bus.publisher(topics.to(topics.RADIO, topics.HANDED))
         self._heard_s: float | None = None
+        self._unaccounted: deque[tuple[int, bytes]] = deque()
         self.last_tick = -1
+        roll.when_present(topics.RADIO, self._send_again)
         mail.read(topics.RADIO, topics.CARRIED, self._on_carried)
 
     def place(self, truth: Truth) -> None:
@@ -49,7 +52,18 @@ class RealTimeRadio:
         if now_s - self._heard_s > self._silence_s:
             raise MissionBrokenError(f"the radio is silent for {self._silence_s:g} s")
         schedule = self._schedule
-        self._put_placed(encode(Placed(schedule.clock_ns(now_s), schedule.anchor, truth)))
+        placed = encode(Placed(schedule.clock_ns(now_s), schedule.anchor, truth))
+        self._unaccounted.append((truth.tick, placed))
+        self._put_placed(placed)
+
+    def excuse(self) -> None:
+        """Nobody could be heard: the radio's patience begins anew."""
+        self._heard_s = time.monotonic()
+
+    def _send_again(self) -> None:
+        """The radio is back: truths without an account may be lost. It knows what it has."""
+        for _, placed in self._unaccounted:
+            self._put_placed(placed)
 
     def hand_over(self, request: TransmitRequest) -> None:
         """A robot has handed something to its NIC."""
@@ -62,4 +76,6 @@ class RealTimeRadio:
             raise MissionBrokenError(f"the radio put no {error}") from None
         self._heard_s = time.monotonic()
         self.last_tick = said[0]
+        while self._unaccounted and self._unaccounted[0][0] <= self.last_tick:
+            self._unaccounted.popleft()
         self._take(said)

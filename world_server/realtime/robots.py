@@ -83,6 +83,10 @@ class _Robot:
         self.incarnation, self.runs, self.refused = incarnation, False, None
         self.asked, self.given, self.answers = {}, deque(), 0
 
+    def ask_anew(self, now_s: float) -> None:
+        """The time since it was asked does not count."""
+        self.asked = dict.fromkeys(self.asked, now_s)
+
 
 class RealTimeRobots:
     """All of them. silence_s: how long one may say nothing [s]. hand_over: tells the radio."""
@@ -104,12 +108,15 @@ class RealTimeRobots:
         self._slow: Set[int] = frozenset()
         self._robots: dict[int, _Robot] = {}
         self._ids = {topics.robot_name(i): i for i in robots}
+        self._put_wake: dict[str, Callable[[bytes], None]] = {}
         for name, i in self._ids.items():
             put = bus.publisher(topics.to(name, topics.OBSERVATION), may_drop=True)
             self._robots[i] = _Robot(i, put)
             mail.read(name, topics.ACTED, partial(self._on_acted, i))
             mail.read(name, topics.FAILED, partial(self._on_failure, i))
+            self._put_wake[name] = bus.publisher(topics.to(name, topics.WAKE))
         mail.read_stray(self._on_stray)
+        roll.when_seen_again(self._on_reunion)
 
     def close(self, truth: Truth, starting: Set[int]) -> Answers:
         """What robots have given for the tick that ends. starting: whose process is yet to come."""
@@ -142,12 +149,23 @@ class RealTimeRobots:
             if incarnation != robot.incarnation:
                 robot.begin(incarnation)
             if i in observations and not robot.runs:  # time in which it was stopped does not count
-                robot.asked = dict.fromkeys(robot.asked, now_s)
+                robot.ask_anew(now_s)
             robot.runs, robot.is_prompt = i in observations, i not in late
             if robot.given:
                 self._pass_on(robot)
             elif robot.runs and topics.robot_name(i) in self._roll.present:
                 self._ask(robot, truth.tick, now_s, observations[i])
+
+    def excuse(self) -> None:
+        """Nobody could be heard: the patience with each begins anew."""
+        now_s = time.monotonic()
+        for robot in self._robots.values():
+            robot.ask_anew(now_s)
+
+    def _on_reunion(self, name: str) -> None:
+        """Tell a robot that was out of sight, and is still in the mission, to go on as it is."""
+        if name in self._ids and self._robots[self._ids[name]].incarnation >= 0:
+            self._put_wake[name](b"")
 
     @staticmethod
     def _ask(robot: _Robot, tick: int, now_s: float, observation: bytes) -> None:
@@ -184,6 +202,8 @@ class RealTimeRobots:
         action = given.action
         if action.incarnation < robot.incarnation:
             return  # the last word of the process that was here before
+        if given.number <= robot.answers:
+            return  # said again by one that was out of sight
         wrong = self._limits.breach(action, action.tick, robot.incarnation)
         if wrong is None and action.tick not in robot.asked:
             wrong = UNASKED

@@ -1,5 +1,6 @@
 """Logs: the digest of the run, the prefix of a torn file, a clear line for what is none."""
 
+import tracemalloc
 from pathlib import Path
 
 import pytest
@@ -85,6 +86,39 @@ def test_a_flushed_log_loses_nothing_when_its_writer_dies(tmp_path: Path) -> Non
     assert [tick.tick for tick in read.ticks()] == list(range(10))
     assert read.torn
     log.close(None)
+
+
+def test_the_bytes_of_a_log_are_those_of_the_package_s_own_writer(
+    recorded: tuple[Path, str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("onehop.wire.log_writer._Index", list)
+    log = LogFile(recorded[0])
+    plain = tmp_path / "plain.mcap"
+    writer = LogWriter(plain, log.bundle, "inline")
+    for tick in log.ticks():
+        writer.write(tick.tick, list(tick.messages))
+    writer.close(log.summary)
+    assert plain.read_bytes() == recorded[0].read_bytes()
+
+
+def test_what_a_log_in_the_making_keeps_in_memory_is_the_bytes_of_its_index(tmp_path: Path) -> None:
+    """Ten for each channel of a chunk and some for the chunk: a mission may last for days."""
+    log = LogWriter(tmp_path / "mission.mcap", field(tmp_path), "inline")
+    keys = [f"obs/{robot}" for robot in range(50)]
+    chunks = 1000
+
+    def write(ticks: range) -> int:
+        for tick in ticks:
+            log.write(tick, [(key, b"o") for key in keys])
+            log.flush()
+        return tracemalloc.get_traced_memory()[0]
+
+    tracemalloc.start()
+    before = write(range(10))
+    kept = write(range(10, 10 + chunks)) - before
+    tracemalloc.stop()
+    log.close(None)
+    assert kept / chunks < 1.25 * (10 * len(keys) + 100)
 
 
 @pytest.mark.parametrize("content", [b"", b"\x89MC", b"not a log at all, but text\n"])

@@ -28,13 +28,17 @@ class Team:
         self.asked: list[str] = []
         self.handed: list[TransmitRequest] = []
         self.shut: list[str] = []
+        self.woken: list[str] = []
         self.readers: dict[str, Callable[[bytes], None]] = {}
         self.present = {"robot-1", "robot-2"}
         self.stray: Callable[[str], None] = lambda _: None
+        self.see_again: Callable[[str], None] = lambda _: None
         world: Any = self
         self.robots = RealTimeRobots(world, world, world, (1, 2), 10.0, self.handed.append)
 
     def publisher(self, key: str, **_: Any) -> Callable[[bytes], None]:
+        if key.endswith("/wake"):
+            return lambda _: self.woken.append(key.split("/")[1])
         return lambda data: self.asked.append(f"{key.split('/')[1]} {data.decode()}")
 
     def read(self, name: str, what: str, reader: Callable[[bytes], None]) -> None:
@@ -42,6 +46,9 @@ class Team:
 
     def read_stray(self, reader: Callable[[str], None]) -> None:
         self.stray = reader
+
+    def when_seen_again(self, act: Callable[[str], None]) -> None:
+        self.see_again = act
 
     def shut_out(self, name: str) -> None:
         self.shut.append(name)
@@ -168,3 +175,37 @@ def test_the_last_word_of_a_process_that_was_here_before_is_ignored(team: Team) 
     team.robots.ask(again, {1: b"1"})
     team.answer(1, 0)
     assert team.end(again) == ({}, {})
+
+
+def test_who_is_seen_again_is_told_to_go_on_if_it_is_still_in_the_mission(team: Team) -> None:
+    team.begin(0)
+    team.begin(1, robots=(1,))
+    team.see_again("robot-1")
+    team.see_again("robot-2")
+    team.see_again("radio")
+    assert team.woken == ["robot-1"]
+
+
+def test_an_answer_that_is_said_again_counts_once(team: Team) -> None:
+    first = team.begin(0)
+    team.answer(1, 0)
+    team.answer(1, 0)
+    assert team.end(first) == ({1: 0}, {})
+    second = team.begin(1)
+    team.answer(1, 0)
+    assert team.end(second) == ({}, {})
+    assert not team.shut
+    assert len(team.handed) == 1
+
+
+def test_time_in_which_nobody_could_be_heard_does_not_count_as_silence(
+    team: Team, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now_s = [100.0]
+    monkeypatch.setattr("world_server.realtime.robots.time.monotonic", lambda: now_s[0])
+    now = team.begin(0)
+    now_s[0] += 15.0  # for longer than the patience with a robot
+    team.robots.excuse()
+    assert team.end(now) == ({}, {})
+    now_s[0] += 15.0
+    assert team.end(now)[1] == {1: "silent for 10 s", 2: "silent for 10 s"}
