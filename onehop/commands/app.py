@@ -124,6 +124,9 @@ def run(
     with_view: Annotated[
         bool, Option("--view/--no-view", help="Add to the log what Foxglove and Rerun show.")
     ] = True,
+    with_figure: Annotated[
+        bool, Option("--figure/--no-figure", help="Draw the mission, in trajectory.png.")
+    ] = True,
     as_json: AsJson = False,
     live: Annotated[
         str | None,
@@ -156,7 +159,7 @@ def run(
 
     settings = [*settings, *command.clock_settings(None if clock is None else clock.value, speed)]
     places = (map_file, start, goal, out)
-    wanted = (record, record and with_view, as_json)
+    wanted = (record, record and with_view, record and with_figure, as_json)
     hosts = command.Hosts(bus, keys, remote, mission, wait_s, router.value)
     nodes = Ros2(ros_router, ros_domain, ros_distro.value) if ros2 else None
     given = command.run(

@@ -43,6 +43,7 @@ def run(
     out: Path | None,
     record: bool,
     with_view: bool,
+    with_figure: bool,
     as_json: bool,
     program: str | None = None,
     hosts: Hosts | None = None,
@@ -107,9 +108,13 @@ def run(
         else:
             _print(summary, folder)
         if summary["log"] is not None:
-            figure = _add_pictures(Path(summary["log"]), with_view)
-            if not as_json:
-                print(f"figure      {figure}")
+            log = Path(summary["log"])
+            if with_figure:
+                figure = _draw(log)
+                if not as_json:
+                    print(f"figure      {figure}")
+            if with_view:
+                _add_view(log)
         if shown is not None:
             shown.stay(summary)
     return 0 if summary["outcome"] == "arrived" else 1
@@ -186,19 +191,25 @@ def _energy(log: Path) -> list[dict[str, Any]]:
     ]
 
 
-def _add_pictures(log: Path, with_view: bool) -> Path:
-    """Draw the mission's figure and put the viewer layer into a sound log; returns the figure."""
-    from onehop.analysis.log import open_log
+def _draw(log: Path) -> Path:
+    """Draw the mission's figure; returns its file."""
     from onehop.analysis.trajectory import draw_trajectory
-    from onehop.analysis.view.layer import write_view
     from onehop.wire.log_reader import LogFile
 
     figure = log.with_name(FIGURE)
     with explained(log.parent, REMEDY):
         draw_trajectory(LogFile(log), figure)
-        if with_view and not (opened := open_log(log)).torn:
-            write_view(opened, log)
     return figure
+
+
+def _add_view(log: Path) -> None:
+    """Put the viewer layer into a sound log."""
+    from onehop.analysis.log import open_log
+    from onehop.analysis.view.layer import write_view
+
+    with explained(log.parent, REMEDY):
+        if not (opened := open_log(log)).torn:
+            write_view(opened, log)
 
 
 def _print(summary: dict[str, Any], folder: Path) -> None:

@@ -140,7 +140,8 @@ def _try(scenario: Scenario, folder: Path, verdict: Verdict) -> None:
 
 def _run(scenario: Path, out: Path, driver: str, hash_seed: str, verdict: Verdict) -> Path:
     """The log of one run. Raises MissionError."""
-    words = ["run", str(scenario), "--driver", driver, "--json", "--no-view", "--out", str(out)]
+    quick = ["--json", "--no-view", "--no-figure"]
+    words = ["run", str(scenario), "--driver", driver, *quick, "--out", str(out)]
     done = subprocess.run(
         [sys.executable, "-m", "onehop", *words],
         capture_output=True,

@@ -10,7 +10,6 @@ from onehop.contracts.errors import MapError
 from onehop.contracts.sections import MapSection
 from onehop.maps.movingai import movingai_map
 from onehop.maps.polygons import polygon_map
-from onehop.maps.ros import ros_image, ros_map
 from onehop.maps.walls import WallMap
 
 LARGEST_FILE = 1 << 28
@@ -22,7 +21,13 @@ def map_files(name: str, content: bytes) -> tuple[str, ...]:
 
     Raises MapError when the file cannot be read that far.
     """
-    return (ros_image(name, content),) if _is_ros(name) else ()
+    if not _is_ros(name):
+        return ()
+    from onehop.maps.ros import (
+        ros_image,
+    )  # libraries of 40 ms that missions without pictures do not need
+
+    return (ros_image(name, content),)
 
 
 def load_map(section: MapSection, files: Mapping[str, bytes]) -> WallMap:
@@ -35,6 +40,8 @@ def load_map(section: MapSection, files: Mapping[str, bytes]) -> WallMap:
         return polygon_map(section)
     content = _content(files, section.file)
     if _is_ros(section.file):
+        from onehop.maps.ros import ros_image, ros_map
+
         image = ros_image(section.file, content)
         return ros_map(section.file, content, _content(files, image))
     if section.file.endswith(".map"):

@@ -18,7 +18,6 @@ from onehop.node import lifeline
 from onehop.node.bus import Bus, open_certified_router, open_client, open_router
 from onehop.node.identity import TLS, Certificate, Identity
 from onehop.node.own_settings import keep_to_own_settings
-from onehop.node.reachability import why_not
 
 DEFAULT_MISSION = "onehop"
 """Prefix of a mission's keys where nobody gives one: several hosts need not be told."""
@@ -109,6 +108,8 @@ def connect(options: argparse.Namespace, name: str) -> Bus:
         try:
             return open_client(options.mission, options.connect, name, identity, FIRST_TRY_MS)
         except MissionError:
+            from onehop.node.reachability import why_not  # with OpenSSL, which Zenoh does not need
+
             why = why_not(options.connect, identity)
             _say(f"{name}: no bus at {options.connect} yet: {why}\n")
         return open_client(options.mission, options.connect, name, identity)

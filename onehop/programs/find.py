@@ -13,8 +13,7 @@ from onehop.contracts.ranges import out_of_range
 from onehop.contracts.scenario import Scenario
 from onehop.plugins import PROGRAMS, imported, value_of
 from onehop.plugins import check as check_plugins
-from onehop.robot import Program
-from onehop.scenario.structure import structured
+from onehop.robot import NoParameters, Program
 
 
 def search_in(folder: str) -> None:
@@ -44,6 +43,12 @@ def parameters_of(program: type[Program], table: dict[str, Any], origin: str, ke
         raise InputError(
             f"{origin}: {key}", f"Parameters of {name} is no dataclass", "a frozen dataclass"
         )
+    if kind is NoParameters and not table:
+        return NoParameters()
+    from onehop.scenario.structure import (
+        structured,
+    )  # a library of 20 ms that our own program does not need
+
     values = structured(table, kind, origin, key)
     problems: Iterable[Problem] = out_of_range(values)
     if hasattr(values, "problems"):

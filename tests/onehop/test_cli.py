@@ -117,14 +117,14 @@ def test_an_inline_run_gives_the_promised_keys_and_files(tmp_path: Path) -> None
     assert (tmp_path / "here" / "trajectory.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize(("option", "seen"), [("--view", True), ("--no-view", False)])
-def test_the_log_of_a_run_has_the_viewer_layer_unless_told_otherwise(
-    tmp_path: Path, option: str, seen: bool
+@pytest.mark.parametrize(("options", "seen"), [((), True), (("--no-view", "--no-figure"), False)])
+def test_a_run_has_the_viewer_layer_and_its_figure_unless_told_otherwise(
+    tmp_path: Path, options: tuple[str, ...], seen: bool
 ) -> None:
     bundle = field(tmp_path, "clock.limit_s=2")
     printed = log_of(bundle, tmp_path / "plain.mcap")
     answer = onehop(
-        "run", "field.toml", "--driver", "inline", "--json", "--out", "here", option,
+        "run", "field.toml", "--driver", "inline", "--json", "--out", "here", *options,
         "--set", "clock.limit_s=2", cwd=tmp_path,
     )  # fmt: skip
     log = tmp_path / "here" / "mission.mcap"
@@ -132,6 +132,7 @@ def test_the_log_of_a_run_has_the_viewer_layer_unless_told_otherwise(
         summary = make_reader(stream).get_summary()
     assert summary is not None
     assert ("/tf" in {channel.topic for channel in summary.channels.values()}) is seen
+    assert (tmp_path / "here" / "trajectory.png").exists() is seen
     assert json.loads(answer.stdout)["digest"] == digest(LogFile(log)) == printed
 
 
