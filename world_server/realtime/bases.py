@@ -80,6 +80,7 @@ class RealTimeBases:
         self._open_briefings = open_briefings
         self._briefings: contextlib.ExitStack | None = None
         self._tell = bus.publisher(topics.to(topics.OPERATOR, topics.TOLD))
+        self._excused_s = 0.0
         self._taken: dict[int, Measured] = {}
         self._last_taken: Mapping[int, Measured] = {}
         self._bases = [
@@ -130,9 +131,13 @@ class RealTimeBases:
                 continue
             if base.name not in self._roll.present:
                 fenced[base.robot] = "its base is gone"
-            elif time.monotonic() - base.sound_s > self._silence_s:
+            elif time.monotonic() - max(base.sound_s, self._excused_s) > self._silence_s:
                 fenced[base.robot] = f"its base is silent for {self._silence_s:g} s{base.excuse}"
         return fenced
+
+    def excuse(self) -> None:
+        """Nobody could hear them until now: their silence counts from here on."""
+        self._excused_s = time.monotonic()
 
     def _let_in(self) -> None:
         """Answer a driver that comes again, as long as one is missing."""

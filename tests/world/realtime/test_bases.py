@@ -153,3 +153,20 @@ def test_the_mission_waits_for_the_first_measurement_of_each() -> None:
     house.measure(3.0)
     house.bases.await_all()
     assert list(house.bases.take()) == [REAL]
+
+
+def test_silence_counts_from_when_it_can_be_heard_again_and_it_does_not_drive_meanwhile(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    now_s = [100.0]
+    monkeypatch.setattr("world_server.realtime.bases.time.monotonic", lambda: now_s[0])
+    house = House(silence_s=5.0, hold_s=0.5)
+    house.measure(3.0)
+    house.bases.take()
+    now_s[0] = 108.0
+    house.bases.excuse()
+    assert house.bases.fenced(truth(REAL)) == {}
+    house.bases.drive(7, {REAL: Twist(0.5, 0.0)})
+    assert decode(Drive, house.said[-1][1]).twist == STANDSTILL
+    now_s[0] = 113.5
+    assert house.bases.fenced(truth(REAL)) == {REAL: "its base is silent for 5 s"}
