@@ -29,9 +29,8 @@ if [ "$ONEHOP_UID" = 0 ]; then  # nothing runs as root
 fi
 trap '"${compose[@]}" down --volumes --timeout 5 >/dev/null 2>&1; rm -f .compose-demo.yaml' EXIT
 "${compose[@]}" build world
-timeout 300 "${compose[@]}" up --no-build --no-color >runs/compose/containers.log 2>&1 || {
+timeout 300 "${compose[@]}" --profile report up --no-build --no-color >runs/compose/containers.log 2>&1 || {
   tail -n 40 runs/compose/containers.log
   exit 1
 }
-"${compose[@]}" run --rm report
 .venv/bin/python docker/compare_digests.py runs/compose/summary.json "$scenario"

@@ -33,6 +33,7 @@ def compose(scenario: Path, out: Path | None) -> int:
         programs=programs if bundle.scenario.has_own_programs() else None,
         command=f"onehop compose {scenario}{target}",
         builds=(folder / "Dockerfile").exists(),
+        clock=bundle.scenario.clock.mode,
     )
     text = compose_file(source)
     if out is None:

@@ -25,12 +25,15 @@ HEAD = """\
 # Another mission, or a greater team: write it again.
 #
 #   mkdir -p runs/compose
-#   docker compose up --build          the mission; its log and summary appear in runs/compose
-#   docker compose run --rm report     its report, beside them
+#   docker compose up --build                the mission; its log and summary appear in runs/compose
+#   docker compose --profile report up       the same, and at its end its report, beside them
+#   ONEHOP_CLOCK=realtime docker compose up  by the wall clock; ONEHOP_CLOCK=lockstep: everyone waits for
+#                                            everyone (default: {clock})
 #
 # The service `keys` makes certificates at the first start; docker compose down --volumes forgets them.
 # ONEHOP_UID: the user of all processes, owner of runs/compose (default 1000; id -u tells yours).
-# A process that dies stays dead; docker compose up robot-3 lets it take part again.
+# ONEHOP_RTPRIO=2: by the wall clock, each process may run as soon as it has to (SCHED_RR; default 0).
+# A process that dies stays dead; docker compose up -d robot-3 lets it take part again.
 
 x-process: &process
   image: onehop
@@ -42,6 +45,8 @@ x-process: &process
   security_opt: ["no-new-privileges:true"]
   restart: "no"
   stop_grace_period: 5s
+  ulimits:
+    rtprio: ${{ONEHOP_RTPRIO:-0}}
   depends_on:
     keys:
       condition: service_completed_successfully
@@ -68,13 +73,26 @@ KERNELS = "/var/cache/onehop"
 
 LOG = "./runs/compose:/log"
 
+AT_THE_END = """\
+    profiles: [report]
+    depends_on:
+      recorder:
+        condition: service_completed_successfully
+"""
+"""When a service starts that works on a whole log, if it is asked for."""
+
+AT_THE_BEGIN = """\
+    depends_on: {}
+"""
+"""When one starts that works for all others."""
+
 
 @dataclass(frozen=True, slots=True)
 class Source:
     """What the containers run. folder: of the scenario, from where the file is written; file: its name.
 
     programs: where robots find theirs, from `folder`, None: in the image. command: what writes this
-    file. builds: whether the image is built there.
+    file. builds: whether the image is built there. clock: the mode of the scenario's.
     """
 
     folder: str
@@ -83,6 +101,7 @@ class Source:
     programs: str | None
     command: str
     builds: bool
+    clock: str
 
 
 def compose_file(source: Source) -> str:
@@ -91,7 +110,9 @@ def compose_file(source: Source) -> str:
     processes = (topics.WORLD, *clients)
     build = BUILD.format(processes=" ".join(processes)) if source.builds else ""
     scenario = f"{source.folder}/{source.file}".removeprefix("./")
-    head = HEAD.format(scenario=scenario, command=source.command, build=build, port=PORT)
+    head = HEAD.format(
+        scenario=scenario, command=source.command, build=build, port=PORT, clock=source.clock
+    )
     return head + "\n".join((*_services(source, clients), *_networks(clients), *_volumes(processes)))
 
 
@@ -103,13 +124,14 @@ def _services(source: Source, clients: Sequence[str]) -> Iterator[str]:
     yield from _service("keys", [*make, "--missing"], [*keys, mission], ())
     world = ["python", "-m", "world_server", scenario, "--listen", f"tls/0.0.0.0:{PORT}"]
     world += ["--keys", "/keys", "--driver", "compose"]
+    world += ["--set", f"clock.mode='${{ONEHOP_CLOCK:-{source.clock}}}'"]
     yield from _service(topics.WORLD, world, [*_own(topics.WORLD), mission], clients)
     for name in clients:
         more, volumes = _part_of(name, source)
         command = ["python", "-m", *more, "--connect", BUS, "--keys", "/keys"]
         yield from _service(name, command, [*_own(name), *volumes], (name,))
     report = ["python", "-m", "onehop", "report", "/log/mission.mcap", "--out", "/log/report"]
-    yield from _service("report", report, [KERNELS, LOG], (), "report")
+    yield from _service("report", report, [KERNELS, LOG], (), AT_THE_END)
 
 
 def _part_of(name: str, source: Source) -> tuple[list[str], list[str]]:
@@ -136,18 +158,20 @@ def _own(name: str) -> list[str]:
 
 
 def _service(
-    name: str, command: Sequence[str], volumes: Sequence[str], networks: Sequence[str], profile: str = ""
+    name: str,
+    command: Sequence[str],
+    volumes: Sequence[str],
+    networks: Sequence[str],
+    when: str = AT_THE_BEGIN,
 ) -> Iterator[str]:
     yield f"  {name}:"
     yield "    <<: *process"
-    if profile:
-        yield f"    profiles: [{profile}]"
     yield f"    command: {json.dumps(command)}"
     if networks:
         yield f"    networks: [{', '.join(networks)}]"
     else:  # one that does its work alone, and ends
         yield "    network_mode: none"
-        yield "    depends_on: {}"
+        yield from when.splitlines()
         yield "    healthcheck:"
         yield "      disable: true"
     yield "    volumes:"

@@ -193,10 +193,14 @@ class OperatorSession:
         return self._end is not None and (recorder_ended or now - self._end_s > DIGEST_S)
 
     def _given_up(self, now: float) -> str | None:
-        """Why a world whose process runs is not waited for any more."""
-        if now - self._gone_s > (ROUTER_GONE_S if self._external else GONE_S):
-            who = "the router, or the world process," if self._external else "the world process"
-            return f"{who} is gone from the bus: stopped, or cut off"
+        """Why a world that has said nothing of an end is not waited for any more."""
+        gone_for_s = now - self._gone_s
+        if self._external:
+            has_ended = self._group.exit_status(topics.WORLD) is not None
+            if gone_for_s > (0.0 if has_ended else ROUTER_GONE_S):
+                return "the router, or the world process, is gone from the bus: stopped, or cut off"
+        elif gone_for_s > GONE_S:
+            return "the world process is gone from the bus: stopped, or cut off"
         if self._stop.number is not None and now - self._stop.at_s > STOP_S:
             return f"{STOPPED}, and the world did not end the mission"
         return None

@@ -70,6 +70,22 @@ def test_every_process_has_its_own_certificate_and_network_and_no_privileges() -
     ] == []
 
 
+@pytest.mark.parametrize("mode", ["lockstep", "realtime"])
+def test_the_clock_is_the_scenario_s_unless_it_is_said_otherwise(mode: str, tmp_path: Path) -> None:
+    file = written(tmp_path, f"[clock]\nmode = '{mode}'\n")
+    world = file["services"]["world"]
+    assert world["command"][-2:] == ["--set", f"clock.mode='${{ONEHOP_CLOCK:-{mode}}}'"]
+    assert world["ulimits"] == {"rtprio": "${ONEHOP_RTPRIO:-0}"}
+
+
+def test_the_report_is_made_of_a_log_that_is_whole_and_only_where_it_is_asked_for() -> None:
+    services = yaml.safe_load((ROOT / "compose.yaml").read_text())["services"]
+    report = services.pop("report")
+    assert report["profiles"] == ["report"]
+    assert report["depends_on"] == {"recorder": {"condition": "service_completed_successfully"}}
+    assert not [name for name, service in services.items() if "profiles" in service]
+
+
 @pytest.mark.parametrize("size", [1, 50])
 def test_a_team_of_any_size_is_one_command(size: int, tmp_path: Path) -> None:
     file = written(tmp_path, f"[team]\nsize = {size}\n")
