@@ -77,6 +77,7 @@ class RealTimeBases:
         self._rules = bases
         self._silence_s = silence_s
         self._hold_s = hold_s
+        self._excused_s = 0.0
         self._open_briefings = open_briefings
         self._briefings: contextlib.ExitStack | None = None
         self._tell = bus.publisher(topics.to(topics.OPERATOR, topics.TOLD))
@@ -130,9 +131,13 @@ class RealTimeBases:
                 continue
             if base.name not in self._roll.present:
                 fenced[base.robot] = "its base is gone"
-            elif time.monotonic() - base.sound_s > self._silence_s:
+            elif time.monotonic() - max(base.sound_s, self._excused_s) > self._silence_s:
                 fenced[base.robot] = f"its base is silent for {self._silence_s:g} s{base.excuse}"
         return fenced
+
+    def excuse(self) -> None:
+        """Nobody could be heard: the patience with each begins anew."""
+        self._excused_s = time.monotonic()
 
     def _let_in(self) -> None:
         """Answer a driver that comes again, as long as one is missing."""

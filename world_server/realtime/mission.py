@@ -112,6 +112,7 @@ class RealTime:
         self.roll.give_up()
         self.radio.excuse()
         self.robots.excuse()
+        self.bases.excuse()
 
     def _end(self, truth: Truth) -> None:
         """The tick of this truth ends with what has been given."""

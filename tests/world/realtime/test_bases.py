@@ -116,6 +116,13 @@ def test_who_measures_nothing_sound_for_too_long_leaves_and_is_told_why() -> Non
     assert house.bases.fenced(truth(REAL)) == {REAL: "its base is silent for -1 s"}
 
 
+def test_while_nobody_could_be_heard_no_base_was_silent() -> None:
+    house = House(silence_s=60.0)
+    assert house.bases.fenced(truth(REAL)) != {}  # the clock of this machine runs for longer
+    house.bases.excuse()
+    assert house.bases.fenced(truth(REAL)) == {}
+
+
 def test_without_its_driver_a_robot_leaves_and_the_driver_may_come_again() -> None:
     house = House()
     house.measure(3.0)
