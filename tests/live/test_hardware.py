@@ -18,14 +18,13 @@ from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.geometry import Pose
 from onehop.contracts.hardware import Taken
 from onehop.contracts.messages import Truth
-from onehop.mission import authority
 from onehop.mission.injection import inject
 from onehop.mission.operator import STOPPED
 from onehop.mission.rendezvous import way_into
 from onehop.wire.codec import decode
 from onehop.wire.log_reader import LogFile
 from onehop.wire.summary import read_summary
-from tests.live.hosts import DAYS, ended, tls_endpoint
+from tests.live.hosts import Router, ended, made_keys, tls_endpoint
 from tests.live.mission import DEADLINE_S, Mission, proven
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
@@ -106,10 +105,7 @@ def await_log(mission: Mission, happens: Callable[[LogFile], bool], what: str) -
 
 
 def test_a_driver_that_is_started_by_hand_has_its_certificate_and_may_come_again(tmp_path: Path) -> None:
-    keys, endpoint = tmp_path / "keys", tls_endpoint()
-    authority.found(keys)
-    for name in authority.names_of(TEAM, (REAL,)):
-        authority.issue(keys, name, (), DAYS)
+    keys, endpoint = made_keys(tmp_path / "keys", TEAM, bases=(REAL,)), tls_endpoint()
     words = [sys.executable, "base_driver.py", "--id", str(REAL), "--connect", endpoint]
     words += ["--keys", str(keys), "hardware.toml", "5,10.5,0"]
 
@@ -149,6 +145,25 @@ def test_a_driver_that_is_started_by_hand_has_its_certificate_and_may_come_again
     left = [(one.robot, one.why) for truth in truths(log) for one in truth.departures]
     assert set(left) == {(REAL, "its base is gone")}
     assert len(left) >= 2
+
+
+@pytest.mark.campaign
+def test_a_base_outlives_the_router(tmp_path: Path) -> None:
+    """Its driver is started here, with its certificate; nobody leaves, and it measures and drives on."""
+    keys, endpoint = made_keys(tmp_path / "keys", TEAM, bases=(REAL,)), tls_endpoint()
+    options = ("--bus", endpoint, "--keys", str(keys), "--router", "external")
+    with Router(keys, endpoint, (REAL,)) as router:
+        mission = Mission(tmp_path, "clock.limit_s=8", scenario=SCENARIO, options=options)
+        await_log(mission, lambda log: len(way(log, REAL)) > 20, "it takes part")
+        before = numbers(LogFile(mission.out / "mission.mcap"))[-1]
+        router.kill()
+        time.sleep(3.0)
+        router.start_again()
+        summary = mission.finish()
+    assert summary["reason"] == "time limit of 8 s"
+    log = proven(mission.out / "mission.mcap")
+    assert not [truth for truth in truths(log) if truth.departures]
+    assert numbers(log)[-1] > before + 100
 
 
 def present(log: LogFile) -> set[int]:
