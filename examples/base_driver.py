@@ -32,6 +32,10 @@ DEADMAN_S = 0.5
 """After so long without a command the base rests [s], whatever has become of world and network."""
 
 
+REUNION_S = 10.0
+"""How long a driver that has lost the world looks for it [s]: a cable, or the router, may come back."""
+
+
 class Base(Protocol):
     """What a base has to offer. Frames: docs/hardware.md."""
 
@@ -160,7 +164,7 @@ def measurement(base: Base, number: int) -> bytes:
 
 def serve(bus: Bus, base: Base) -> int:
     """Measure and drive to the end of the mission; the exit status. The base rests when this ends."""
-    number, commanded_s = 0, -math.inf
+    number, commanded_s, gone_s = 0, -math.inf, math.inf
     due_s = time.monotonic()
     try:
         while True:
@@ -172,9 +176,13 @@ def serve(bus: Bus, base: Base) -> int:
                 elif what == "end":
                     return 0
                 elif what == "world is gone":
-                    return 3
+                    gone_s, commanded_s = time.monotonic(), -math.inf
+                elif what == "world is there":
+                    gone_s = math.inf
             if time.monotonic() - commanded_s > DEADMAN_S:
                 base.drive(0.0, 0.0)
+            if time.monotonic() - gone_s > REUNION_S:
+                return 3
             number += 1
             bus.measured(measurement(base, number))
             due_s = max(due_s + 1.0 / RATE_HZ, time.monotonic())

@@ -103,15 +103,24 @@ def test_it_drives_as_it_is_told_and_rests_when_nothing_more_comes(load: Any, cl
     assert base.by(0.5 + driver.DEADMAN_S + 1.5 / driver.RATE_HZ) == (0.0, 0.0)
 
 
-@pytest.mark.parametrize(("what", "status"), [("end", 0), ("world is gone", 3)])
-def test_at_the_end_and_without_a_world_the_base_rests(
-    load: Any, clock: Clock, what: str, status: int
-) -> None:
+def test_at_the_end_the_base_rests(load: Any, clock: Clock) -> None:
     driver, base = load("base_driver"), Wheels(clock)
-    script = Script(clock, (0.1, "drive", drive(0.5, 0.2)), (0.2, what, b""))
-    assert driver.serve(script.bus, base) == status
+    script = Script(clock, (0.1, "drive", drive(0.5, 0.2)), (0.2, "end", b""))
+    assert driver.serve(script.bus, base) == 0
     assert base.by(0.15) == (0.5, 0.2)
     assert base.driven[-1] == (0.2, 0.0, 0.0)
+
+
+def test_without_a_world_the_base_rests_at_once_until_one_is_there(load: Any, clock: Clock) -> None:
+    driver, base = load("base_driver"), Wheels(clock)
+    said = [(0.1, "drive", drive(0.5, 0.2)), (0.2, "world is gone", b"")]
+    back = [(5.0, "world is there", b""), (5.2, "drive", drive(0.3, 0.0)), (5.3, "world is gone", b"")]
+    assert driver.serve(Script(clock, *said, *back).bus, base) == 3
+    assert base.by(0.15) == (0.5, 0.2)
+    assert {base.by(0.2 + 1.5 / driver.RATE_HZ), base.by(1.0), base.by(5.1)} == {(0.0, 0.0)}
+    assert base.by(5.25) == (0.3, 0.0)
+    assert clock.now_s - 100.0 == pytest.approx(5.3 + driver.REUNION_S, abs=0.1)
+    assert base.driven[-1][1:] == (0.0, 0.0)
 
 
 def test_whatever_goes_wrong_the_base_rests(load: Any, clock: Clock) -> None:

@@ -26,10 +26,10 @@ LINK = "10.77.0."
 """Addresses of the hosts that are namespaces."""
 
 
-def made_keys(folder: Path, robots: Sequence[int], *hosts: str) -> Path:
-    """A folder of keys for a team."""
+def made_keys(folder: Path, robots: Sequence[int], *hosts: str, bases: Sequence[int] = ()) -> Path:
+    """A folder of keys for a team. bases: robots with a real one."""
     authority.found(folder)
-    for name in authority.names_of(robots):
+    for name in authority.names_of(robots, bases):
         authority.issue(folder, name, hosts, DAYS)
     return folder
 
@@ -79,10 +79,13 @@ with zenoh.open(zenoh.Config.from_file(sys.argv[1])):
 
 
 class Router:
-    """A router with the configuration of `onehop keys` and Zenoh's own threads, as zenohd has them."""
+    """A router with the configuration of `onehop keys` and Zenoh's own threads, as zenohd has them.
 
-    def __init__(self, keys: Path, endpoint: str) -> None:
-        names = authority.names_of(range(1, 7))
+    For robots 1 to 6. bases: those with a real one.
+    """
+
+    def __init__(self, keys: Path, endpoint: str, bases: Sequence[int] = ()) -> None:
+        names = authority.names_of(range(1, 7), bases)
         self._path = write_router_file(own_certificate(keys, authority.ROUTER), "onehop", names)
         self._path.write_text(self._path.read_text().replace("tls/[::]:7447", endpoint))
         self._child = self._started()

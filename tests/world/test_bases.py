@@ -6,10 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onehop.contracts.fault_section import FaultSection
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist
-from onehop.contracts.hardware import Measured
+from onehop.contracts.hardware import LARGEST, Measured
 from onehop.contracts.messages import Action, Contact
 from onehop.contracts.robot_entry import RobotEntry
 from onehop.contracts.scenario import Scenario
@@ -214,3 +216,27 @@ def test_nobody_can_put_it_elsewhere() -> None:
     order = FaultSection(kind="kidnap", at_s=None, robots=(REAL,), x=10.0, y=5.0)
     why = "robots: robot 2 has a real base, which nobody can put elsewhere; one of 1, 3"
     assert world().refusal(order) == why
+
+
+@given(
+    st.builds(
+        Measured,
+        st.integers(1, 2**53),
+        st.builds(Pose, st.floats(-1.0, 21.0), st.floats(-1.0, 11.0), st.floats(-math.pi, math.pi)),
+        st.builds(Twist, st.floats(-LARGEST, LARGEST), st.floats(-LARGEST, LARGEST)),
+        st.sampled_from((0.0, 1e-30, 3.0, 1e30, math.inf)).map(
+            lambda room: np.full(BEAMS, room, dtype=np.float32)
+        ),
+    )
+)
+@settings(max_examples=60, deadline=None)
+def test_whatever_a_base_can_measure_the_world_goes_on(at: Measured) -> None:
+    ground = world()
+    assert ground.bases.refusal(REAL, at) is None
+    for _ in range(3):
+        step(ground, (NEAR, 1.0, 0.5), (REAL, 1.0, 0.0), at=at)
+        seen = ground.observe()
+        assert seen[REAL].pose == at.pose
+        assert not np.isnan(seen[REAL].scan).any()
+        others = [one.pose for one in ground.truth().present if one.robot != REAL]
+        assert all(0.0 <= one.x <= 20.0 and 0.0 <= one.y <= 10.0 for one in others)

@@ -136,7 +136,7 @@ class RealTimeBases:
         return fenced
 
     def excuse(self) -> None:
-        """Nobody could hear them until now: their silence counts from here on."""
+        """Nobody could be heard: the patience with each begins anew."""
         self._excused_s = time.monotonic()
 
     def _let_in(self) -> None:

@@ -48,10 +48,11 @@ def test_keys_and_rights_are_those_of_the_router() -> None:
 
 def test_the_times_are_those_of_the_code() -> None:
     driver = (ROOT / "examples" / "base_driver.py").read_text()
-    rate, deadman = (
-        float(re.findall(rf"^{name} = (\S+)", driver, re.M)[0]) for name in ("RATE_HZ", "DEADMAN_S")
-    )
+    names = "RATE_HZ", "DEADMAN_S", "REUNION_S"
+    found = (re.findall(rf"^{name} = (\S+)", driver, re.M) for name in names)
+    rate, deadman, reunion = (float(number) for (number,) in found)
     assert f"({rate:g} Hz: up to {1e3 / rate:g} ms)" in PAGE
     assert f"no command for {deadman:g} s (`DEADMAN_S`" in PAGE
+    assert f"for {reunion:g} s (`REUNION_S`)" in PAGE
     assert f"no measurement within {FIRST_S:g} s" in PAGE
     assert f"more than {BEYOND:g} m outside of the map" in PAGE

@@ -7,6 +7,8 @@ from typing import Any
 import msgpack
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from onehop.contracts import topics
 from onehop.contracts.geometry import STANDSTILL, Pose, Twist
@@ -98,6 +100,22 @@ def test_what_is_wrong_is_dropped_and_told_once(put: Callable[[House], None], wh
     (line,) = house.told()
     assert line.startswith(f"{NAME}: a measurement is dropped: {why}")
     assert house.bases.fenced(truth(REAL)) == {}
+
+
+@given(st.data())
+@settings(deadline=None)
+def test_bytes_that_are_altered_are_taken_or_dropped_and_nothing_else(data: st.DataObject) -> None:
+    house = House()
+    house.measure(3.0)
+    house.bases.take()
+    scan = np.full(BEAMS, 5.0, dtype=np.float32)
+    wire = bytearray(encode(Measured(2, Pose(3.0, 5.0, 0.0), STANDSTILL, scan)))
+    place = data.draw(st.integers(0, len(wire) - 1))
+    wire[place] ^= data.draw(st.integers(1, 255))
+    house.put(bytes(wire[: data.draw(st.sampled_from((place, len(wire))))]))
+    taken = house.bases.take()
+    assert len(taken) + len(house.told()) == 1
+    assert "\n" not in "".join(house.told())
 
 
 def test_who_measures_nothing_sound_for_too_long_leaves_and_is_told_why() -> None:
