@@ -1,8 +1,23 @@
-"""Print the run-time dependencies of a pyproject.toml, one a line: what the image installs."""
+"""What the image installs: the run-time dependencies of pyproject.toml and of its bridge to ROS 2.
+
+    python docker/dependencies.py pyproject.toml
+
+prints them, one a line.
+"""
 
 import sys
 import tomllib
 from pathlib import Path
 
-for requirement in tomllib.loads(Path(sys.argv[1]).read_text())["project"]["dependencies"]:
-    print(requirement)
+EXTRAS = ("ros2",)
+
+
+def requirements(pyproject: Path) -> list[str]:
+    """As they stand in a pyproject.toml."""
+    project = tomllib.loads(pyproject.read_text())["project"]
+    extras = project["optional-dependencies"]
+    return [*project["dependencies"], *(one for extra in EXTRAS for one in extras[extra])]
+
+
+if __name__ == "__main__":
+    print("\n".join(requirements(Path(sys.argv[1]))))

@@ -13,9 +13,10 @@ import subprocess
 import sys
 import sysconfig
 import tarfile
-import tomllib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+
+from dependencies import requirements
 
 PACKAGES = "/opt/python-packages"
 _SKIPPED = {
@@ -62,9 +63,8 @@ def _standard_library(top: Path) -> Iterator[Path]:
 
 
 def _packages() -> Iterator[tuple[Path, str]]:
-    """Files of pip and of everything that the project requires, with their names below PACKAGES."""
-    project = tomllib.loads(Path("pyproject.toml").read_text())["project"]
-    wanted = ["pip", *map(_name, project["dependencies"])]
+    """Files of pip and of everything that the image installs, with their names below PACKAGES."""
+    wanted = ["pip", *map(_name, requirements(Path("pyproject.toml")))]
     seen: set[str] = set()
     while wanted:
         name = wanted.pop()

@@ -35,9 +35,7 @@ def bridge(ros2: Ros2, folder: Path) -> Iterator[None]:
     typestore()
     log = folder / LOG
     command = [sys.executable, "-m", "onehop.ros2", str(log), "--router", ros2.router]
-    command += ["--domain", str(ros2.domain), "--distro", ros2.distro, "--until-stdin-closes"]
-    if log.exists():
-        command += ["--older-ns", str(log.stat().st_mtime_ns)]
+    command += ["--domain", str(ros2.domain), "--distro", ros2.distro, "--until-stdin-closes", "--new"]
     with subprocess.Popen(
         command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, start_new_session=True
     ) as child:

@@ -27,6 +27,8 @@ HEAD = """\
 #   mkdir -p runs/compose
 #   docker compose up --build                the mission; its log and summary appear in runs/compose
 #   docker compose --profile report up       the same, and at its end its report, beside them
+#   docker compose --profile ros2 up         the same among the ROS 2 nodes of this machine, by a router
+#                                            of rmw_zenoh on 127.0.0.1:7447 (else: ONEHOP_ROS_PORT)
 #   ONEHOP_CLOCK=realtime docker compose up  by the wall clock; ONEHOP_CLOCK=lockstep: everyone waits for
 #                                            everyone (default: {clock})
 #
@@ -81,6 +83,13 @@ AT_THE_END = """\
 """
 """When a service starts that works on a whole log, if it is asked for."""
 
+BESIDE = f"""\
+    profiles: [ros2]
+    depends_on: {{}}
+    ports: ["127.0.0.1:${{ONEHOP_ROS_PORT:-{PORT}}}:{PORT}"]
+"""
+"""When the bridge to ROS 2 starts, if it is asked for, and where nodes out of its container find it."""
+
 AT_THE_BEGIN = """\
     depends_on: {}
 """
@@ -121,7 +130,7 @@ def _services(source: Source, clients: Sequence[str]) -> Iterator[str]:
     scenario = f"/mission/{source.file}"
     keys = ["authority:/keys", *(f"keys-{name}:/keys/{name}" for name in (topics.WORLD, *clients))]
     make = ["python", "-m", "onehop", "keys", "/keys", "--scenario", scenario, "--host", "world"]
-    yield from _service("keys", [*make, "--missing"], [*keys, mission], ())
+    yield from _service("keys", [*make, "--missing"], [*keys, mission], (), AT_THE_BEGIN)
     world = ["python", "-m", "world_server", scenario, "--listen", f"tls/0.0.0.0:{PORT}"]
     world += ["--keys", "/keys", "--driver", "compose"]
     world += ["--set", f"clock.mode='${{ONEHOP_CLOCK:-{source.clock}}}'"]
@@ -132,6 +141,9 @@ def _services(source: Source, clients: Sequence[str]) -> Iterator[str]:
         yield from _service(name, command, [*_own(name), *volumes], (name,))
     report = ["python", "-m", "onehop", "report", "/log/mission.mcap", "--out", "/log/report"]
     yield from _service("report", report, [KERNELS, LOG], (), AT_THE_END)
+    ros2 = ["python", "-m", "onehop.ros2", "/log/mission.mcap", "--new"]
+    ros2 += ["--listen", f"tcp/0.0.0.0:{PORT}"]
+    yield from _service("ros2", ros2, [f"{LOG}:ro"], ("ros2",), BESIDE)
 
 
 def _part_of(name: str, source: Source) -> tuple[list[str], list[str]]:
@@ -162,16 +174,16 @@ def _service(
     command: Sequence[str],
     volumes: Sequence[str],
     networks: Sequence[str],
-    when: str = AT_THE_BEGIN,
+    when: str = "",
 ) -> Iterator[str]:
     yield f"  {name}:"
     yield "    <<: *process"
     yield f"    command: {json.dumps(command)}"
+    yield from when.splitlines()
     if networks:
         yield f"    networks: [{', '.join(networks)}]"
     else:  # one that does its work alone, and ends
         yield "    network_mode: none"
-        yield from when.splitlines()
         yield "    healthcheck:"
         yield "      disable: true"
     yield "    volumes:"
@@ -189,6 +201,7 @@ def _networks(clients: Sequence[str]) -> Iterator[str]:
             yield "    ipam:"
             yield "      config:"
             yield f"        - subnet: {subnet}"
+    yield "  ros2: {}"
     yield ""
 
 

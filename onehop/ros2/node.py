@@ -42,8 +42,13 @@ def open_session(endpoint: str) -> tuple[zenoh.Session, bool]:
         return _open_client(endpoint), False
     if not endpoint.startswith(LOOPBACK):
         raise MissionError(f"no router at {endpoint}: start rmw_zenohd there, or give its address")
+    return open_router(endpoint), True
+
+
+def open_router(endpoint: str) -> zenoh.Session:
+    """A session that is the router of ROS 2 itself. Raises MissionError where it cannot listen."""
     try:
-        return _open({"mode": "router", "listen/endpoints": [endpoint]}), True
+        return _open({"mode": "router", "listen/endpoints": [endpoint]})
     except zenoh.ZError as error:
         raise MissionError(f"no router at {endpoint}: {str(error).splitlines()[0]}") from None
 

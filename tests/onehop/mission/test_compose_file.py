@@ -51,7 +51,8 @@ def test_every_process_has_its_own_certificate_and_network_and_no_privileges() -
     robots = [f"robot-{i}" for i in range(1, 7)]
     clients = ["radio", "recorder", *robots]
     services = file["services"]
-    assert list(services) == ["keys", "world", *clients, "report"]
+    assert list(services) == ["keys", "world", *clients, "report", "ros2"]
+    assert services.pop("ros2")["networks"] == ["ros2"]
     for name, service in services.items():
         assert (service["read_only"], service["cap_drop"]) == (True, ["ALL"])
         assert service["user"] == "${ONEHOP_UID:-1000}:${ONEHOP_UID:-1000}"
@@ -64,6 +65,7 @@ def test_every_process_has_its_own_certificate_and_network_and_no_privileges() -
             assert service["networks"] == (clients if name == "world" else [name])
         else:
             assert service["network_mode"] == "none"
+    assert file["networks"].pop("ros2") == {}
     assert all(network == {"internal": True} for network in file["networks"].values())
     assert [
         one for one in services["robot-3"]["volumes"] if "mission" in one or "scenarios" in one
@@ -83,7 +85,14 @@ def test_the_report_is_made_of_a_log_that_is_whole_and_only_where_it_is_asked_fo
     report = services.pop("report")
     assert report["profiles"] == ["report"]
     assert report["depends_on"] == {"recorder": {"condition": "service_completed_successfully"}}
-    assert not [name for name, service in services.items() if "profiles" in service]
+    assert [name for name, service in services.items() if "profiles" in service] == ["ros2"]
+
+
+def test_nodes_of_ros_2_see_a_log_as_it_grows_and_nothing_else_of_the_mission() -> None:
+    bridge = yaml.safe_load((ROOT / "compose.yaml").read_text())["services"]["ros2"]
+    assert (bridge["profiles"], bridge["depends_on"]) == (["ros2"], {})
+    assert bridge["volumes"] == ["./runs/compose:/log:ro"]
+    assert bridge["ports"] == ["127.0.0.1:${ONEHOP_ROS_PORT:-7447}:7447"]
 
 
 @pytest.mark.parametrize("size", [1, 50])
