@@ -3,6 +3,8 @@
 import contextlib
 import itertools
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -173,4 +175,22 @@ def test_a_router_that_does_not_come_back_ends_the_mission(
         summary = mission.finish()
     assert summary["outcome"] == "aborted"
     assert summary["reason"].startswith("the router, or the world process, is gone")
+    proven(mission.out / "mission.mcap")
+
+
+@pytest.mark.campaign
+def test_a_radio_that_does_not_come_back_ends_the_mission(tmp_path: Path) -> None:
+    """It is on another host, from where nobody tells of its death."""
+    keys, endpoint = made_keys(tmp_path / "keys", range(1, 7), "127.0.0.1"), tls_endpoint()
+    bus = (endpoint, "--keys", str(keys))
+    mission = Mission(
+        tmp_path, *REAL_TIME, "clock.limit_s=600", options=("--bus", *bus, "--remote", "radio")
+    )
+    radio = subprocess.Popen([sys.executable, "-m", "radio_proxy", "--connect", *bus], text=True)
+    with ended(radio):
+        mission.await_ticks(UNDER_WAY_BYTES)
+        radio.kill()
+        summary = mission.finish()
+    assert summary["outcome"] == "aborted"
+    assert summary["reason"].startswith("the radio process is gone from the bus")
     proven(mission.out / "mission.mcap")
