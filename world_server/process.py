@@ -83,6 +83,7 @@ def _host(
         robots,
         recorder_away_s=RECORDER_AWAY_S if clock.is_realtime else ACCOUNT_S,
         bases=world.bases,
+        radio_may_be_away=clock.is_realtime,
         router_may_go=clock.is_realtime and not bus.is_router,
     )
     briefings = Briefings(bundle, walls, driver, roll.incarnation)
@@ -107,6 +108,7 @@ def _host(
     wall_s = time.monotonic() - started
     recording.hand_over()
     mail.close_mission()
+    roll.wait_for_nobody()
     tell_the_end(End(outcome, recording.last_tick, wall_s, mission.punctuality))
     mail.wait(lambda: roll.present.isdisjoint(roll.everyone), FAREWELL_S)
 

@@ -7,6 +7,7 @@ gone, so its loss counts a moment later.
 
 If the router is a process of its own it may go, and come back. All tokens vanish with it, the world's
 own too: that tells it from the end of one process. Whoever was there is out of sight then, and not gone.
+In real time a radio whose token vanishes is so, too: nothing can happen without it.
 """
 
 import time
@@ -33,7 +34,7 @@ class RollCall:
 
     recorder_away_s: how long the recorder may be gone from the bus while its process lives [s].
     bases: robots with a real one.
-    router_may_go: whether the mission outlives its router.
+    radio_may_be_away, router_may_go: whether the mission can wait for either.
     """
 
     def __init__(
@@ -42,9 +43,11 @@ class RollCall:
         robots: Iterable[int],
         recorder_away_s: float = ACCOUNT_S,
         bases: Iterable[int] = (),
+        radio_may_be_away: bool = False,
         router_may_go: bool = False,
     ) -> None:
         self._mail = mail
+        self._radio_may_be_away = radio_may_be_away
         self._router_may_go = router_may_go
         self.router_is_gone = False
         self._vanished: dict[str, float] = {}
@@ -104,6 +107,14 @@ class RollCall:
             self._lose(name)
         self._out_of_sight.clear()
 
+    def wait_for_nobody(self) -> None:
+        """From now on who is gone from the bus is gone: the mission is over."""
+        self._radio_may_be_away = self._router_may_go = self.router_is_gone = False
+        for name in (*self._vanished, *sorted(self._out_of_sight)):
+            self._lose(name)
+        self._vanished.clear()
+        self._out_of_sight.clear()
+
     def gather(self, names: Iterable[str], limit_s: float) -> None:
         """Wait until all of these are present. Raises MissionBrokenError when one dies or is late."""
         self._awaited = frozenset(names)
@@ -127,7 +138,7 @@ class RollCall:
             if name in self._out_of_sight:
                 self._out_of_sight.discard(name)
                 self._on_reunion(name)
-        elif self.router_is_gone:
+        elif self.router_is_gone or (self._radio_may_be_away and name == topics.RADIO):
             self._out_of_sight.add(name)
         elif self._router_may_go:
             self._vanished[name] = time.monotonic()

@@ -3,6 +3,8 @@
 import contextlib
 import itertools
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -46,8 +48,8 @@ def wait(done: Callable[[], bool]) -> None:
 
 
 @contextlib.contextmanager
-def by_hand(folder: Path, base: Host, second: Host, third: Host) -> Iterator[Path]:
-    """A mission that nobody launches; gives its log. Recorder and robot 1 have a host each.
+def by_hand(folder: Path, base: Host, second: Host, third: Host, fourth: Host) -> Iterator[Path]:
+    """A mission that nobody launches; gives its log. Recorder, robot 1 and radio have a host each.
 
     Left, it is ended by a SIGTERM to the world.
     """
@@ -59,7 +61,7 @@ def by_hand(folder: Path, base: Host, second: Host, third: Host) -> Iterator[Pat
     world = base.start("world_server", str(scenario), "--listen", *bus, *settings)
     children = [
         world,
-        base.start("radio_proxy", "--connect", *bus),
+        fourth.start("radio_proxy", "--connect", *bus),
         second.start("onehop.recorder", "--out", str(out), "--connect", *bus),
         third.start("robot_agent", "--id", "1", "--connect", *bus),
         *(base.start("robot_agent", "--id", str(i), "--connect", *bus) for i in (2, 3)),
@@ -78,21 +80,27 @@ def grow(log: Path, size: int) -> None:
     wait(lambda: log.exists() and log.stat().st_size > before + size)
 
 
-def test_a_robot_and_the_recorder_whose_cables_are_pulled_come_back(tmp_path: Path) -> None:
-    """The robot for a moment, which it does not notice; then both, for longer than a lease."""
-    with hosts(3) as (base, second, third), by_hand(tmp_path, base, second, third) as path:
+def test_whoever_s_cable_is_pulled_comes_back(tmp_path: Path) -> None:
+    """A robot's for a moment, which it does not notice; then that and the recorder's for longer than a
+    lease; then the radio's."""
+    with hosts(4) as four, by_hand(tmp_path, *four) as path:
+        _, second, third, fourth = four
         with third.cut():
             time.sleep(0.2)
         grow(path, UNDER_WAY_BYTES)
         with second.cut(), third.cut():
             time.sleep(CUT_S)
         wait(lambda: has_come_back(LogFile(path)))
+        with fourth.cut():
+            time.sleep(CUT_S)
+        wait(lambda: has_gone_on(LogFile(path)))
     log, summary = proven(path), read_summary(path.parent)
     assert summary is not None
     timing, whole, ticks = summary["realtime"], truths(log), speaks(log, 1)
     assert [one.tick for one in whole] == list(range(summary["ticks"]))
     assert timing["unrecorded_ticks"] <= 1  # the one that was in the making when it was ended
-    assert timing["moved_ms"] < 1e3 * CUT_S / 2.0
+    (held,) = held_ticks(log)
+    assert timing["moved_ms"] < 1e3 * (CUT_S + 1.0)  # for the radio alone
 
     left = [(truth.tick, one.robot, one.why) for truth in whole for one in truth.departures]
     again = [(truth.tick, one.kind, one.robots) for truth in whole for one in truth.faults]
@@ -102,7 +110,7 @@ def test_a_robot_and_the_recorder_whose_cables_are_pulled_come_back(tmp_path: Pa
     assert (rest.robot, rest.twist.v, rest.twist.w) == (1, 0.0, 0.0)
     silence = max((later - tick, tick) for tick, later in itertools.pairwise(ticks))
     assert silence[0] * PERIOD_S > CUT_S / 2.0
-    assert silence[1] < left[0][0] < again[0][0] < silence[1] + silence[0]
+    assert silence[1] < left[0][0] < again[0][0] < silence[1] + silence[0] < held
 
 
 def has_come_back(log: LogFile) -> bool:
@@ -129,24 +137,27 @@ def test_a_router_that_is_killed_and_comes_back_costs_time_and_nothing_else(tmp_
     assert timing["unrecorded_ticks"] == 0
     assert [(one.robot, one.incarnation) for one in whole[-1].present] == [(1, 0), (2, 0), (3, 0)]
     assert not [truth for truth in whole if truth.departures or truth.faults]
-    (held,) = [tick for tick, late_ns in late(log) if late_ns > 1e9 * (CUT_S - 2.0)]
-    for robot in (1, 2, 3):
-        assert max(speaks(log, robot)) > held + 20
-        assert heard(log, robot, range(held + 1, held + 21)) > 0
+    (held,) = held_ticks(log)
+    assert min(max(speaks(log, robot)) for robot in (1, 2, 3)) > held + 20
+    assert is_heard(log, range(held + 1, held + 61))  # not after as long as the router was away
 
 
-def late(log: LogFile) -> list[tuple[int, int]]:
-    """Ticks that began late, and by how much [ns]."""
-    return [
-        (one.tick, decode(Lateness, one.data).late_ns)
-        for one in log.wire.select(lambda key: key == "late")
-    ]
+def held_ticks(log: LogFile) -> list[int]:
+    """Ticks before which everybody has waited."""
+    lates = log.wire.select(lambda key: key == "late")
+    return [one.tick for one in lates if decode(Lateness, one.data).late_ns > 1e9]
 
 
-def heard(log: LogFile, robot: int, ticks: range) -> int:
-    """How many receptions a robot has taken in within some ticks."""
-    inboxes = log.wire.select(lambda key: key == f"rx/{robot}")
-    return sum(len(decode(Inbox, one.data).receptions) for one in inboxes if one.tick in ticks)
+def is_heard(log: LogFile, ticks: range) -> bool:
+    """Whether any robot has heard another within some ticks."""
+    inboxes = log.wire.select(lambda key: key.startswith("rx/"))
+    return any(decode(Inbox, one.data).receptions for one in inboxes if one.tick in ticks)
+
+
+def has_gone_on(log: LogFile) -> bool:
+    """Whether everybody has waited for the radio, and has heard somebody since."""
+    held = held_ticks(log)
+    return held != [] and is_heard(log, range(held[0] + 1, held[0] + 1_000_000))
 
 
 @pytest.mark.campaign
@@ -164,4 +175,22 @@ def test_a_router_that_does_not_come_back_ends_the_mission(
         summary = mission.finish()
     assert summary["outcome"] == "aborted"
     assert summary["reason"].startswith("the router, or the world process, is gone")
+    proven(mission.out / "mission.mcap")
+
+
+@pytest.mark.campaign
+def test_a_radio_that_does_not_come_back_ends_the_mission(tmp_path: Path) -> None:
+    """It is on another host, from where nobody tells of its death."""
+    keys, endpoint = made_keys(tmp_path / "keys", range(1, 7), "127.0.0.1"), tls_endpoint()
+    bus = (endpoint, "--keys", str(keys))
+    mission = Mission(
+        tmp_path, *REAL_TIME, "clock.limit_s=600", options=("--bus", *bus, "--remote", "radio")
+    )
+    radio = subprocess.Popen([sys.executable, "-m", "radio_proxy", "--connect", *bus], text=True)
+    with ended(radio):
+        mission.await_ticks(UNDER_WAY_BYTES)
+        radio.kill()
+        summary = mission.finish()
+    assert summary["outcome"] == "aborted"
+    assert summary["reason"].startswith("the radio process is gone from the bus")
     proven(mission.out / "mission.mcap")

@@ -31,7 +31,7 @@ LEAD_S = 0.2
 """From the arrival of the last process to the first tick [s]."""
 
 REUNION_S = 10.0
-"""How long a router of its own, and all who were connected to it, may take to come back [s]."""
+"""How long the radio may take to come back, or a router of its own and all its clients [s]."""
 
 LAST_ACCOUNT_S = 2.0
 """How long the radio may take for the last tick, when the mission is over [s]."""
@@ -68,7 +68,7 @@ class RealTime:
         while outcome is None:
             truth = self.world.truth()
             self._wait_until(self.schedule.due_s(truth.tick + 1))
-            self._wait_for_router()
+            self._wait_for_who_is_out_of_sight()
             late_s = self.schedule.begin(truth.tick + 1, time.monotonic())
             self._end(truth)
             outcome = self.world.outcome()
@@ -102,8 +102,8 @@ class RealTime:
     def _wait_until(self, due_s: float) -> None:
         self.mail.wait(lambda: False, due_s - time.monotonic())
 
-    def _wait_for_router(self) -> None:
-        """Without its router nobody can see or do anything: the tick lasts until all are back."""
+    def _wait_for_who_is_out_of_sight(self) -> None:
+        """Without router or radio nobody can do anything: the tick lasts until all are back."""
         if self.roll.settle():
             return
         self.mail.wait(self.roll.settle, REUNION_S)

@@ -13,14 +13,14 @@ class Sight:
     """The roll call of a mission of robots 1 and 2. broken: why it is to be broken off. back: who came
     in sight again."""
 
-    def __init__(self, monkeypatch: pytest.MonkeyPatch, router_may_go: bool = True) -> None:
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, **may: bool) -> None:
         self.now_s = 100.0
         monkeypatch.setattr("world_server.roll_call.time.monotonic", lambda: self.now_s)
         self.readers: dict[str, Callable[[bytes], None]] = {}
         self.broken: list[str] = []
         self.back: list[str] = []
         mail: Any = self
-        self.roll = RollCall(mail, (1, 2), router_may_go=router_may_go)
+        self.roll = RollCall(mail, (1, 2), **may)
         self.roll.when_seen_again(self.back.append)
         self.come("world", "radio", "recorder", "robot-1", "robot-2")
 
@@ -51,7 +51,7 @@ EVERYONE = {"radio", "recorder", "robot-1", "robot-2"}
 
 @pytest.fixture
 def sight(monkeypatch: pytest.MonkeyPatch) -> Sight:
-    return Sight(monkeypatch)
+    return Sight(monkeypatch, router_may_go=True)
 
 
 @pytest.mark.parametrize(
@@ -90,7 +90,31 @@ def test_one_process_that_goes_is_gone_a_moment_later(sight: Sight) -> None:
     assert (sight.broken, sight.back) == ([], [])
 
 
+def test_when_the_mission_is_over_who_goes_is_gone(monkeypatch: pytest.MonkeyPatch) -> None:
+    sight = Sight(monkeypatch, radio_may_be_away=True, router_may_go=True)
+    sight.go("robot-1", "world", "recorder")
+    sight.roll.wait_for_nobody()
+    assert sight.roll.present == {"radio", "robot-2"}
+    sight.go("radio", "robot-2")
+    assert sight.roll.present == set()
+
+
 def test_where_the_world_is_the_router_it_is_gone_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
-    sight = Sight(monkeypatch, router_may_go=False)
+    sight = Sight(monkeypatch)
     sight.go("robot-2")
     assert sight.roll.present == EVERYONE - {"robot-2"}
+
+
+def test_a_radio_that_may_be_away_is_waited_for_until_it_is_given_up(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    sight = Sight(monkeypatch, radio_may_be_away=True)
+    for _ in range(2):
+        sight.go("radio", "robot-2")
+        assert (sight.roll.settle(), sight.broken) == (False, [])
+        sight.come("radio", "robot-2")
+        assert sight.roll.settle()
+    sight.go("radio")
+    sight.roll.give_up()
+    assert sight.broken == ["the radio process is gone from the bus: killed, stopped or cut off"]
+    assert sight.roll.present == EVERYONE - {"radio"}
