@@ -55,7 +55,9 @@ class RealTimeRadio:
                     self._on_placed(decode(Placed, data))
                 elif what == topics.END:
                     return 0
-                elif what == topics.alive(topics.WORLD) and data == GONE:
+                elif (what, data) == (topics.alive(topics.WORLD), GONE) and (
+                    self._clock.is_set or not startup.finds_world(self._bus)
+                ):
                     return startup.WORLD_IS_GONE
             if self._clock.is_set:
                 self._deliver(self._radio.follow(self._clock.now_ns(time.monotonic())))

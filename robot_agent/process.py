@@ -8,13 +8,12 @@ that is says its briefing. One that fails says so to the world, and on stderr in
 import os
 import signal
 import sys
-import time
 
 from onehop.contracts import topics
 from onehop.contracts.briefings import Briefing
 from onehop.contracts.messages import Inbox, Observation, percept
 from onehop.node import startup
-from onehop.node.bus import ALIVE, GONE, Bus
+from onehop.node.bus import GONE, Bus
 from onehop.programs.find import search_in
 from onehop.programs.host import Host, ProgramError
 from onehop.wire.batch import unpack_tick
@@ -45,11 +44,6 @@ def main() -> int:
             bus.withdraw()
 
 
-REUNION_S = 10.0
-"""How long a process that was stopped, or in real time cut off, looks for the world [s] when its session
-has been given up. Without having been told of a stop it joins again, as one that knows nothing."""
-
-
 def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
     """Take part; the exit status, or None if this robot was cut off and may join again."""
     put = bus.publisher(topics.by(name, topics.OUT))
@@ -64,7 +58,7 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
     watchdog = Watchdog(silence_s, lambda failure: os._exit(fail(failure)))
     latest = LatestData(host, bus.publisher(topics.by(name, topics.ACTED)))
     bus.announce(name)
-    will_be_stopped = False
+    is_excused = True  # for having been away: it starts, or was told that it would be stopped
     while True:
         received = bus.poll() if latest.can_step else bus.receive()
         if received is None:
@@ -73,7 +67,7 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
                     latest.step()
             except ProgramError as failure:
                 return fail(failure)
-            will_be_stopped = False
+            is_excused = False
             continue
         what, data = received
         if what == topics.PERCEPT:
@@ -84,7 +78,7 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
                     put(host.step(now))
             except ProgramError as failure:
                 return fail(failure)
-            will_be_stopped = False
+            is_excused = False
         elif what == topics.OBSERVATION:
             if not latest.is_used:
                 startup.be_on_time(is_ours=False)
@@ -92,23 +86,14 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
         elif what == topics.HEARD:
             latest.on_heard(data)
         elif what in (topics.STOP, topics.WAKE):
-            will_be_stopped = True
+            is_excused = True
             put_awake(b"")
         elif what == topics.KILL:
             os.kill(os.getpid(), signal.SIGKILL)
         elif what == topics.END:
             return 0
         elif (what, data) == (topics.alive(topics.WORLD), GONE):
-            if not ((will_be_stopped or latest.is_used) and _finds_world(bus)):
+            if not ((is_excused or latest.is_used) and startup.finds_world(bus)):
                 return startup.WORLD_IS_GONE
-            if not will_be_stopped:
+            if not is_excused:
                 return None
-
-
-def _finds_world(bus: Bus) -> bool:
-    """Whether the world comes back in time; what it says before is lost, and it will ask again."""
-    deadline = time.monotonic() + REUNION_S
-    while (received := bus.receive_by(deadline)) is not None:
-        if received == (topics.alive(topics.WORLD), ALIVE):
-            return True
-    return False

@@ -119,6 +119,43 @@ def test_a_process_that_somebody_starts_again_takes_part_as_after_a_restart(tmp_
     assert present == {1: 0, 2: 0, 3: 1, 4: 0}
 
 
+FAINTING = """
+import os, signal
+from pathlib import Path
+from onehop.robot import Action, Program
+
+class Fainting(Program):
+    def __init__(self, briefing):
+        fainted = Path(__file__).with_name("fainted")
+        if briefing.robot == 2 and not fainted.exists():
+            fainted.touch()
+            os.kill(os.getpid(), signal.SIGSTOP)
+
+    def step(self, percept):
+        return Action()
+"""
+
+
+@pytest.mark.parametrize("mode", ["lockstep", "realtime"])
+def test_a_robot_that_loses_its_session_in_its_start_takes_part_all_the_same(
+    tmp_path: Path, mode: str
+) -> None:
+    """It has been briefed, and is not there yet: as when a busy machine stands still for a lease."""
+    (tmp_path / "fainting.py").write_text(FAINTING)
+    settings = ("team.program='fainting:Fainting'", f"clock.mode='{mode}'", "clock.limit_s=2")
+    mission = Mission(tmp_path, *settings)
+    pid = mission.await_child("robot_agent 2")
+    deadline = time.monotonic() + DEADLINE_S
+    while not ((tmp_path / "fainted").exists() and state(pid) == "T"):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    time.sleep(1.5 * LEASE_MS / 1000.0)
+    os.kill(pid, signal.SIGCONT)
+    summary = mission.finish()
+    assert {one["why"] for one in summary["lost"]} == {"did not arrive"}
+    proven(mission.out / "mission.mcap")
+
+
 @pytest.mark.campaign
 def test_a_restart_that_nobody_carries_out_ends_the_mission(tmp_path: Path) -> None:
     restart = "faults=[{kind='restart', at_s=12, robots=[2]}]"
