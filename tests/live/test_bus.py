@@ -15,7 +15,7 @@ from onehop.node import bus, startup
 from onehop.node.bus import ALIVE, GONE, open_client, open_router
 from onehop.node.identity import make_credentials
 from onehop.node.parts import PART_BYTES
-from tests.live.listening import heard, settle
+from tests.live.listening import be_patient, heard, settle
 from tests.live.mission import PATIENCE_S
 
 pytestmark = pytest.mark.live
@@ -38,7 +38,8 @@ class Network:
 
 
 @pytest.fixture
-def network() -> Iterator[Network]:
+def network(monkeypatch: pytest.MonkeyPatch) -> Iterator[Network]:
+    be_patient(monkeypatch)
     with ExitStack() as stack:
         yield Network(stack)
 

@@ -27,7 +27,7 @@ from onehop.node.identity import session_id
 from onehop.node.parts import PART_BYTES
 from onehop.node.reachability import why_not
 from tests.live.hosts import made_keys, stranger, tls_endpoint
-from tests.live.listening import await_message, heard, settle
+from tests.live.listening import await_message, be_patient, heard, settle
 from tests.live.mission import PATIENCE_S
 
 pytestmark = pytest.mark.live
@@ -76,7 +76,8 @@ def keys(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def house(keys: Path) -> Iterator[House]:
+def house(keys: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[House]:
+    be_patient(monkeypatch)
     with ExitStack() as stack:
         yield House(stack, keys)
 
