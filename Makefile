@@ -6,14 +6,24 @@ STAMP := $(VENV)/.installed
 LOWEST_PYTHON ?= python3.11
 LOWEST := .venv-lowest
 LOWEST_STAMP := $(LOWEST)/.installed
+PIP := -m pip install --quiet --disable-pip-version-check --no-compile
 
-.PHONY: setup demo test check fast slow live lowest lowest-constraints campaign study rust bench fuzz compose-demo compose-faults clean
+# A mission is nine new processes: where bytecode is not kept, each compiles all its modules anew.
+unexport PYTHONDONTWRITEBYTECODE
+
+# Tests in which other people's packages have a part: formats, kernels, figures; the bus, pages, a cluster.
+FOREIGN := tests/world tests/onehop/analysis tests/onehop/commands tests/onehop/contracts \
+    tests/onehop/drivers tests/onehop/live tests/onehop/maps tests/onehop/mission tests/onehop/plugins \
+    tests/onehop/ros2 tests/onehop/scenario tests/onehop/wire tests/onehop/test_*.py tests/test_*.py
+FOREIGN_PROCESSES := tests/live/test_processes.py tests/live/test_live_server.py tests/onehop/campaign
+
+.PHONY: setup demo test check fast slow live lowest lowest-foreign lowest-constraints campaign study rust bench fuzz compose-demo compose-faults clean
 
 setup: $(STAMP)
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[dev]'
+	$(BIN)/python $(PIP) --constraint constraints.txt --editable '.[dev]'
 	touch $@
 
 demo: setup  ## a recorded mission of nine processes, its summary and its figure, and that it kept every promise
@@ -32,23 +42,27 @@ fast: setup
 	$(BIN)/pytest -q -n auto --dist loadscope -m 'not slow and not live'
 
 slow: setup
-	$(BIN)/pytest -q -n auto --dist loadscope -m 'slow and not live and not campaign'
+	$(BIN)/pytest -q -n auto --dist loadscope --no-loadscope-reorder -m 'slow and not live and not campaign'
 
 live: setup
-	$(BIN)/pytest -q -n 2 --dist loadfile -m 'live and not campaign'
+	$(BIN)/pytest -q -n 3 --dist loadfile --no-loadscope-reorder -m 'live and not campaign'
 
 lowest: $(LOWEST_STAMP)  ## the fast tests with the lowest Python and the lowest versions that are promised
 	NUMBA_CACHE_DIR=$(LOWEST)/compiled $(LOWEST)/bin/pytest -q -m 'not slow and not live'
 
+lowest-foreign: $(LOWEST_STAMP)  ## what of them can differ with the versions, and processes that speak to each other
+	NUMBA_CACHE_DIR=$(LOWEST)/compiled $(LOWEST)/bin/pytest -q -m 'not slow and not live' $(FOREIGN)
+	NUMBA_CACHE_DIR=$(LOWEST)/compiled $(LOWEST)/bin/pytest -q -m 'not campaign' $(FOREIGN_PROCESSES)
+
 $(LOWEST_STAMP): pyproject.toml constraints-lowest.txt
 	$(LOWEST_PYTHON) -m venv --clear $(LOWEST)
-	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints-lowest.txt --editable '.[dev]'
+	$(LOWEST)/bin/python $(PIP) --constraint constraints-lowest.txt --editable '.[dev]'
 	touch $@
 
 lowest-constraints:  ## write constraints-lowest.txt anew after a bound in pyproject.toml has changed
 	$(LOWEST_PYTHON) -m venv --clear $(LOWEST)
 	$(LOWEST)/bin/python .ci/lowest.py pyproject.toml > $(LOWEST)/bounds.txt
-	$(LOWEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint $(LOWEST)/bounds.txt --editable '.[dev]'
+	$(LOWEST)/bin/python $(PIP) --constraint $(LOWEST)/bounds.txt --editable '.[dev]'
 	$(LOWEST)/bin/python -m pip freeze --exclude-editable > constraints-lowest.txt
 	touch $(LOWEST_STAMP)
 

@@ -168,7 +168,7 @@ class Bus:
     def messages(self) -> Iterator[tuple[str, bytes]]:
         """What is said to this robot, with its parts put together."""
         parts = b""
-        will_be_stopped = False
+        is_excused = True  # for having been away: it starts, or was told that it would be stopped
         while True:
             what, data = self._queue.get()
             if what == "part":
@@ -176,11 +176,11 @@ class Bus:
                 continue
             data, parts = parts + data, b""
             if what == "world is gone":
-                if not (will_be_stopped and self._world_comes_back()):
+                if not (is_excused and self._world_comes_back()):
                     sys.exit(3)
             elif what != "world is there":
                 is_asked = what in ("percept", "observation")
-                will_be_stopped = what in ("stop", "wake") or (will_be_stopped and not is_asked)
+                is_excused = what in ("stop", "wake") or (is_excused and not is_asked)
                 yield what, data
 
     def _world_comes_back(self) -> bool:

@@ -55,11 +55,6 @@ def _record(options: argparse.Namespace) -> int:
             raise
 
 
-AWAY_S = 10.0
-"""How long the world may be away in real time, until it is given up [s]: this process may have been cut
-off from it, or stopped for longer than a lease."""
-
-
 class _Recorder:
     def __init__(self, bus: Bus, briefing: LogBriefing, options: argparse.Namespace) -> None:
         self._bus = bus
@@ -102,9 +97,9 @@ class _Recorder:
                 return
             what, data = received
             if what == topics.alive(topics.WORLD):
-                if data == GONE and not self._in_real_time:
+                if data == GONE and self._journal.last_tick >= 0 and not self._in_real_time:
                     return
-                away_until = time.monotonic() + AWAY_S if data == GONE else None
+                away_until = time.monotonic() + startup.REUNION_S if data == GONE else None
             else:
                 self._take(what, data)
 

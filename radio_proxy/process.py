@@ -41,9 +41,11 @@ def main() -> int:
 def _serve(bus: Bus, radio: Carrier) -> int:
     put = bus.publisher(topics.by(topics.RADIO, topics.CARRIED))
     bus.announce(topics.RADIO)
+    has_begun = False
     while True:
         what, data = bus.receive()
         if what == topics.TRUTH:
+            has_begun = True
             truth = decode(Truth, data)
             carried = radio.carry(truth)
             messages: list[WireMessage] = [
@@ -53,5 +55,7 @@ def _serve(bus: Bus, radio: Carrier) -> int:
             put(pack_tick(truth.tick, messages))
         elif what == topics.END:
             return 0
-        elif what == topics.alive(topics.WORLD) and data == GONE:
+        elif (what, data) == (topics.alive(topics.WORLD), GONE) and (
+            has_begun or not startup.finds_world(bus)
+        ):
             return startup.WORLD_IS_GONE

@@ -8,7 +8,6 @@ that is says its briefing. One that fails says so to the world, and on stderr in
 import os
 import signal
 import sys
-import time
 
 from onehop.contracts import topics
 from onehop.contracts.briefings import Briefing
@@ -45,13 +44,9 @@ def main() -> int:
             bus.withdraw()
 
 
-REUNION_S = 10.0
-"""How long a process that was stopped, or in real time cut off, looks for the world [s] when its session
-has been given up."""
-
 WAKE_S = 1.0
-"""How long it then waits for the world to say that it is still in the mission [s], if it was not told
-of a stop: all have lost the bus, with its router. Else it joins again, as one that knows nothing."""
+"""How long a robot that was cut off, and has found the world, waits for it to say that it is still in the
+mission [s]: all have lost the bus, with its router. Else it joins again, as one that knows nothing."""
 
 
 def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
@@ -68,7 +63,7 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
     watchdog = Watchdog(silence_s, lambda failure: os._exit(fail(failure)))
     latest = LatestData(host, bus.publisher(topics.by(name, topics.ACTED)))
     bus.announce(name)
-    will_be_stopped = False
+    is_excused = True  # for having been away: it starts, or was told that it would be stopped
     while True:
         received = bus.poll() if latest.can_step else bus.receive()
         if received is None:
@@ -77,7 +72,7 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
                     latest.step()
             except ProgramError as failure:
                 return fail(failure)
-            will_be_stopped = False
+            is_excused = False
             continue
         what, data = received
         if what == topics.PERCEPT:
@@ -88,7 +83,7 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
                     put(host.step(now))
             except ProgramError as failure:
                 return fail(failure)
-            will_be_stopped = False
+            is_excused = False
         elif what == topics.OBSERVATION:
             if not latest.is_used:
                 startup.be_on_time(is_ours=False)
@@ -96,7 +91,7 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
         elif what == topics.HEARD:
             latest.on_heard(data)
         elif what in (topics.STOP, topics.WAKE):
-            will_be_stopped = True
+            is_excused = True
             put_awake(b"")
         elif what == topics.KILL:
             os.kill(os.getpid(), signal.SIGKILL)
@@ -104,18 +99,11 @@ def _serve(bus: Bus, host: Host, name: str, silence_s: float) -> int | None:
             return 0
         elif (what, data) == (topics.alive(topics.WORLD), GONE):
             there, wake = (topics.alive(topics.WORLD), ALIVE), (topics.WAKE, b"")
-            found = _first(bus, REUNION_S, there, wake) if will_be_stopped or latest.is_used else None
+            found = None
+            if is_excused or latest.is_used:
+                found = startup.first_of(bus, startup.REUNION_S, there, wake)
             if found is None:
                 return startup.WORLD_IS_GONE
-            if not (will_be_stopped or found == wake or _first(bus, WAKE_S, wake)):
+            if not (is_excused or found == wake or startup.first_of(bus, WAKE_S, wake)):
                 return None
             latest.say_again()
-
-
-def _first(bus: Bus, within_s: float, *wanted: tuple[str, bytes]) -> tuple[str, bytes] | None:
-    """The first of these that comes in time; what else is said is lost, and the world will ask again."""
-    deadline = time.monotonic() + within_s
-    while (received := bus.receive_by(deadline)) is not None:
-        if received in wanted:
-            return received
-    return None

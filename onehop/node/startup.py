@@ -15,7 +15,7 @@ from pathlib import Path
 from onehop.contracts import topics
 from onehop.contracts.errors import InputError, MissionError, OnehopError
 from onehop.node import lifeline
-from onehop.node.bus import Bus, open_certified_router, open_client, open_router
+from onehop.node.bus import ALIVE, Bus, open_certified_router, open_client, open_router
 from onehop.node.identity import TLS, Certificate, Identity
 from onehop.node.own_settings import keep_to_own_settings
 
@@ -34,6 +34,10 @@ BRIEFING_TIMEOUT_S = 30.0
 
 FIRST_TRY_MS = 10_000
 """How long a process that people have started looks for the bus before it says what is wrong [ms]."""
+
+REUNION_S = 10.0
+"""How long a process looks for the world when its session has been given up [s]: while it starts, when
+it was stopped, and in real time when it was cut off; then a robot joins again, and knows nothing."""
 
 WORLD_IS_GONE = 3
 """Exit status of a process that ends because the world has gone."""
@@ -168,6 +172,20 @@ def briefing(bus: Bus, name: str, announce: Callable[[], None] = lambda: None) -
             return answer
         time.sleep(0.02)
     raise MissionError(f"{name}: the world gave no briefing within {BRIEFING_TIMEOUT_S:.0f} s")
+
+
+def first_of(bus: Bus, within_s: float, *wanted: tuple[str, bytes]) -> tuple[str, bytes] | None:
+    """The first of these that comes in time; what else is said is lost, and the world will ask again."""
+    deadline = time.monotonic() + within_s
+    while (received := bus.receive_by(deadline)) is not None:
+        if received in wanted:
+            return received
+    return None
+
+
+def finds_world(bus: Bus) -> bool:
+    """Whether the world comes back in time."""
+    return first_of(bus, REUNION_S, (topics.alive(topics.WORLD), ALIVE)) is not None
 
 
 def calm_garbage_collector() -> None:

@@ -40,16 +40,22 @@ def tls_endpoint() -> str:
 
 
 def stranger(
-    endpoint: str, keys: Path | None, name: str, own_id: str | None = None, key: Path | None = None
+    endpoint: str,
+    keys: Path | None,
+    name: str,
+    own_id: str | None = None,
+    key: Path | None = None,
+    timeout_ms: int = 60_000,
 ) -> zenoh.Session:
     """A session that shows the certificate of a name, whatever it is worth. Raises zenoh.ZError.
 
     own_id: of the session, that of the name by default. key: another one than the certificate's.
+    timeout_ms: how long it tries again.
     """
     settings: dict[str, Any] = {
         "mode": "client",
         "connect/endpoints": [endpoint],
-        "connect/timeout_ms": 1000,
+        "connect/timeout_ms": timeout_ms,
         "connect/exit_on_failure": True,
         "listen/endpoints": [],
         "scouting/multicast/enabled": False,

@@ -2,6 +2,8 @@
 
 import json
 import os
+import re
+import signal
 import subprocess
 import sys
 import time
@@ -16,12 +18,20 @@ from tests.onehop.scenes import FIELD
 
 DEADLINE_S = 120.0
 
+PATIENCE_S = 60.0
+"""How long what should be so at once may take on a busy machine."""
+
+CREEPING = ("robot.leader_speed=0.05", "clock.limit_s=600")
+"""Settings of a mission that lasts as long as a test needs it: 12,000 ticks, and nobody arrives."""
+
 STARTED: "list[Mission]" = []
 """Missions of the test that runs: what it leaves running ends with it (conftest.py)."""
 
 
 class Mission:
     """`onehop run` of the small scene in a child, with its log growing in `out`.
+
+    It draws no figure and adds no viewer layer, unless the options say so: they take as long as a start.
 
     shell: what a shell does before, such as `ulimit`. options: of the command. within: what the command
     is started by, such as `ip netns exec`. environment: added to ours. scenario: another one's file.
@@ -48,6 +58,8 @@ class Mission:
             "run",
             str(scenario),
             "--json",
+            "--no-view",
+            "--no-figure",
             "--out",
             str(self.out),
             *options,
@@ -77,6 +89,14 @@ class Mission:
         assert printed, said
         return json.loads(printed), said
 
+    def await_line(self, pattern: str) -> None:
+        """Wait until the mission says something, on stderr."""
+        assert self.child.stderr is not None
+        for line in self.child.stderr:
+            if re.search(pattern, line):
+                return
+        raise AssertionError(f"nothing was said of {pattern!r}")
+
     def children(self) -> dict[str, int]:
         """Processes of the mission by name, from the process table: what `ps` would show."""
         found: dict[str, int] = {}
@@ -102,14 +122,26 @@ class Mission:
         return pid
 
     def end_s(self) -> float:
-        """When the mission was over, as its summary says (time.time() [s]); figures come after it."""
+        """When the mission was over, as its summary says (time.time() [s])."""
         return (self.out / "summary.json").stat().st_mtime
+
+    def stop(self) -> dict[str, Any]:
+        """Ctrl-C, once the test has seen enough; the summary."""
+        self.child.send_signal(signal.SIGINT)
+        self.child.communicate(timeout=DEADLINE_S)
+        assert self.child.returncode == 128 + signal.SIGINT
+        summary: dict[str, Any] = json.loads((self.out / "summary.json").read_text())
+        return summary
+
+    def log_bytes(self) -> int:
+        """How long the log is by now; -1 if there is none."""
+        log = self.out / "mission.mcap"
+        return log.stat().st_size if log.exists() else -1
 
     def await_ticks(self, size: int = 60_000) -> None:
         """Wait until the log has grown: the mission is under way."""
-        log = self.out / "mission.mcap"
         deadline = time.monotonic() + DEADLINE_S
-        while not (log.exists() and log.stat().st_size > size):
+        while self.log_bytes() <= size:
             assert time.monotonic() < deadline
             assert self.child.poll() is None
             time.sleep(0.005)
@@ -131,8 +163,8 @@ def contents(out: Path) -> bytes:
 
 
 def gone(pids: list[int]) -> bool:
-    """Whether all of these processes have ended, or do so in a few seconds."""
-    deadline = time.monotonic() + 15.0
+    """Whether all of these processes have ended, or do so in time."""
+    deadline = time.monotonic() + PATIENCE_S
     while time.monotonic() < deadline:
         if not any(Path(f"/proc/{pid}").exists() for pid in pids):
             return True

@@ -14,6 +14,9 @@ from websockets.sync.client import connect
 
 PATIENCE_S = 60.0
 
+STANDS_S = 2.0
+"""How long a mission that stands shows no other tick [s]."""
+
 
 class PageClient:
     """One page. news: the last of each kind that it was sent; answers: of orders and questions."""
@@ -75,6 +78,22 @@ class PageClient:
     def tick(self) -> int:
         return int(self.news["frame"]["tick"]) if "frame" in self.news else -1
 
+    def pause(self) -> int:
+        """Pause the mission, as soon as it can be; the tick at which it stands, when no more comes."""
+
+        def paused(_: "PageClient") -> bool:
+            self.say("pace", ticks_per_s=0, paused=True, steps=0)
+            return bool(self.news.get("hand", {}).get("paused"))
+
+        self.until(paused)
+        self.until(lambda page: page.tick >= 0)
+        stands, since = self.tick, time.monotonic()
+        while time.monotonic() < since + STANDS_S:
+            self.look()
+            if self.tick != stands:
+                stands, since = self.tick, time.monotonic()
+        return stands
+
     def order(self, **fault: Any) -> dict[str, Any]:
         """The answer to a fault."""
         before = len(self.answers)
@@ -117,5 +136,6 @@ def shown_mission(folder: Path, scenario: Path, *settings: str) -> Shown:
     """A mission with its page; its output in folder / "out"."""
     changed = [word for setting in settings for word in ("--set", setting)]
     return Shown(
-        "run", str(scenario), "--live", "--json", "--no-view", "--out", str(folder / "out"), *changed
-    )
+        "run", str(scenario), "--live", "--json", "--no-view", "--no-figure",
+        "--out", str(folder / "out"), *changed,
+    )  # fmt: skip

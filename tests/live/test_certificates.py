@@ -22,18 +22,19 @@ from onehop.contracts import topics
 from onehop.contracts.errors import MissionError
 from onehop.mission import authority
 from onehop.node import startup
-from onehop.node.bus import GONE, Bus, open_certified_router, open_client
+from onehop.node.bus import ALIVE, GONE, Bus, open_certified_router, open_client
 from onehop.node.identity import session_id
 from onehop.node.parts import PART_BYTES
 from onehop.node.reachability import why_not
 from tests.live.hosts import made_keys, stranger, tls_endpoint
+from tests.live.listening import await_message, be_patient, heard, settle
+from tests.live.mission import PATIENCE_S
 
 pytestmark = pytest.mark.live
 
 TEAM = (1, 2)
 
-SOON_S = 3.0
-"""What a busy machine takes for what should be there at once."""
+PATIENCE_MS = int(1000 * PATIENCE_S)
 
 
 class House:
@@ -46,9 +47,9 @@ class House:
         self.world = stack.enter_context(router)
         self.robot = stack.enter_context(self.client("robot-1"))
         self.radio = stack.enter_context(self.client("radio"))
-        time.sleep(0.3)  # declarations travel by themselves; nothing announces that they have arrived
+        settle(self.world, {"robot-1": self.robot, "radio": self.radio})
 
-    def client(self, name: str, timeout_ms: int = 5000) -> Bus:
+    def client(self, name: str, timeout_ms: int = PATIENCE_MS) -> Bus:
         identity = startup.certificate(self.keys, name)
         return open_client("m", self.endpoint, name, identity, timeout_ms)
 
@@ -56,21 +57,12 @@ class House:
         """Whether robot and world hear each other, and nothing else."""
         self.robot.publisher("from/robot-1/word")(b"here")
         self.world.publisher("to/robot-1/order")(b"there")
-        assert _heard(self.world) == [("robot-1/word", b"here")]
-        assert _heard(self.robot) == [("order", b"there")]
-
-
-def _heard(bus: Bus) -> list[tuple[str, bytes]]:
-    messages = []
-    deadline = time.monotonic() + SOON_S
-    while (received := bus.receive_by(deadline)) is not None:
-        messages.append(received)
-        deadline = time.monotonic() + 0.2
-    return messages
+        assert heard(self.world) == [("robot-1/word", b"here")]
+        assert heard(self.robot) == [("order", b"there")]
 
 
 def _is_turned_out(session: zenoh.Session) -> bool:
-    deadline = time.monotonic() + SOON_S
+    deadline = time.monotonic() + PATIENCE_S
     while session.info.routers_zid():
         if time.monotonic() > deadline:
             return False
@@ -84,7 +76,8 @@ def keys(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
-def house(keys: Path) -> Iterator[House]:
+def house(keys: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[House]:
+    be_patient(monkeypatch)
     with ExitStack() as stack:
         yield House(stack, keys)
 
@@ -95,25 +88,25 @@ def test_messages_of_any_length_come_and_go(house: House, size: int) -> None:
     house.robot.publisher("from/robot-1/out")(data)
     house.radio.publisher("from/radio/carried")(data)
     house.world.publisher("to/robot-1/percept")(data)
-    assert sorted(_heard(house.world)) == [("radio/carried", data), ("robot-1/out", data)]
-    assert _heard(house.robot) == [("percept", data)]
+    assert heard(house.world, 2) == [("radio/carried", data), ("robot-1/out", data)]
+    assert heard(house.robot) == [("percept", data)]
 
 
 def test_who_has_no_certificate_gets_nowhere(house: House) -> None:
     with pytest.raises(zenoh.ZError, match="Unable to connect"):
-        stranger(house.endpoint, None, "robot-2")
+        stranger(house.endpoint, None, "robot-2", timeout_ms=1000)
     with pytest.raises(zenoh.ZError, match="Unable to connect"):
-        stranger(house.endpoint.replace("tls/", "tcp/"), None, "robot-2")
+        stranger(house.endpoint.replace("tls/", "tcp/"), None, "robot-2", timeout_ms=1000)
     house.still_works()
 
 
 def test_a_certificate_of_another_authority_gets_nowhere(house: House, tmp_path: Path) -> None:
     foreign = made_keys(tmp_path / "foreign", TEAM)
     with pytest.raises(zenoh.ZError, match="Unable to connect"):
-        stranger(house.endpoint, foreign, "robot-2")
+        stranger(house.endpoint, foreign, "robot-2", timeout_ms=1000)
     shutil.copy(house.keys / "robot-2" / "ca.pem", foreign / "robot-2" / "ca.pem")
     with pytest.raises(zenoh.ZError, match="Unable to connect"):
-        stranger(house.endpoint, foreign, "robot-2")
+        stranger(house.endpoint, foreign, "robot-2", timeout_ms=1000)
     house.still_works()
 
 
@@ -124,13 +117,13 @@ def test_an_expired_certificate_gets_nowhere(
     monkeypatch.setattr(authority, "EARLIER", datetime.timedelta(days=3))
     authority.issue(old, "robot-2", (), days=-1)
     with pytest.raises(zenoh.ZError, match="Unable to connect"):
-        stranger(house.endpoint, old, "robot-2")
+        stranger(house.endpoint, old, "robot-2", timeout_ms=1000)
     house.still_works()
 
 
 def test_a_certificate_without_its_key_gets_nowhere(house: House) -> None:
     with pytest.raises(zenoh.ZError, match="Unable to connect"):
-        stranger(house.endpoint, house.keys, "robot-2", key=house.keys / "robot-1")
+        stranger(house.endpoint, house.keys, "robot-2", key=house.keys / "robot-1", timeout_ms=1000)
     house.still_works()
 
 
@@ -146,7 +139,7 @@ def test_a_robot_that_comes_as_another_one_is_turned_out(house: House) -> None:
         thief.put("m/from/robot-2/out", b"forged")
     with house.client("robot-2") as robot:
         robot.publisher("from/robot-2/word")(b"it is me")
-        assert _heard(house.world) == [("robot-2/word", b"it is me")]
+        assert heard(house.world) == [("robot-2/word", b"it is me")]
     house.still_works()
 
 
@@ -201,19 +194,19 @@ def test_messages_of_100_mb_are_dropped_and_hold_nobody_up(house: House) -> None
 def test_who_is_shut_out_is_turned_out_and_comes_back_when_it_is_let_in(house: House) -> None:
     house.world.watch("robot-1")
     house.robot.announce("robot-1")
-    assert house.world.receive_by(time.monotonic() + SOON_S) == ("world/alive/robot-1", b"alive")
+    await_message(house.world, ("world/alive/robot-1", ALIVE))
     house.world.shut_out("robot-1")
-    assert house.world.receive_by(time.monotonic() + SOON_S) == ("world/alive/robot-1", GONE)
+    await_message(house.world, ("world/alive/robot-1", GONE))
     house.world.let_in("robot-1")
-    assert _heard(house.world)[-1] == ("world/alive/robot-1", b"alive")
+    await_message(house.world, ("world/alive/robot-1", ALIVE))
 
 
 def test_silent_connections_keep_nobody_out(house: House) -> None:
     host, port = house.endpoint.removeprefix("tls/").split(":")
     with ExitStack() as stack:
         for _ in range(100):
-            stack.enter_context(socket.create_connection((host, int(port)), timeout=SOON_S))
-        with house.client("robot-2", timeout_ms=10_000):
+            stack.enter_context(socket.create_connection((host, int(port)), timeout=PATIENCE_S))
+        with house.client("robot-2"):
             house.still_works()
 
 
@@ -237,10 +230,15 @@ def test_who_was_started_by_hand_says_what_is_wrong_and_goes_on(
     endpoint = tls_endpoint()
     options = Namespace(mission="m", connect=endpoint, keys=keys, lifeline=None)
     own = startup.certificate(keys, topics.WORLD)
+    say, said = startup._say, threading.Event()
+    monkeypatch.setattr(startup, "_say", lambda words: (say(words), said.set()))
+
+    def open_when_it_was_said(stack: ExitStack) -> None:
+        assert said.wait(PATIENCE_S)
+        stack.enter_context(open_certified_router("m", endpoint, own, ["radio"]))
+
     with ExitStack() as stack:
-        opening = threading.Timer(
-            1.0, lambda: stack.enter_context(open_certified_router("m", endpoint, own, ["radio"]))
-        )
+        opening = threading.Thread(target=open_when_it_was_said, args=(stack,))
         opening.start()
         with startup.connect(options, "radio"):
             opening.join()

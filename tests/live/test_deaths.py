@@ -12,15 +12,19 @@ import pytest
 
 from onehop.node.bus import LEASE_MS
 from onehop.wire.log_reader import LogFile, digest
-from tests.live.mission import DEADLINE_S, Mission, gone, proven
+from tests.live.mission import CREEPING, DEADLINE_S, Mission, gone, proven
 
 pytestmark = pytest.mark.live
 
-SOON_S = 2.0
-"""A mission that cannot go on ends within this time of the death that ends it."""
+SOON_S = 20.0
+"""A mission that cannot go on ends within this time of the death that ends it, on a busy machine: a
+second on one that has nothing else to do, and a minute if the end waited for anything."""
 
-STOPPED_S = LEASE_MS / 1000.0 + 5.0
+STOPPED_S = LEASE_MS / 1000.0 + SOON_S
 """The same for a process that is stopped: its lease, time for its account, and the end of the rest."""
+
+TO_ITS_END = ("robot.leader_speed=0.05", "clock.limit_s=60")
+"""Settings of a mission that goes on when a robot is lost, and in which nobody arrives."""
 
 NAMES = {
     "world_server": "world",
@@ -33,7 +37,7 @@ NAMES = {
 
 @pytest.fixture
 def mission(tmp_path: Path) -> Mission:
-    return Mission(tmp_path, "clock.limit_s=60")
+    return Mission(tmp_path, *CREEPING)
 
 
 def _replayed(mission: Mission) -> LogFile:
@@ -76,9 +80,23 @@ def test_a_process_that_dies_while_others_still_start_is_named(mission: Mission,
     assert not (mission.out / "stderr").exists()
 
 
+SLOW_STARTER = """
+import pathlib, sys, time
+
+words = sys.orig_argv
+if "robot_agent" in words and words[words.index("--id") + 1] == "2":
+    marker = pathlib.Path({marker!r})
+    if marker.exists():
+        time.sleep(600.0)
+    marker.touch()
+"""
+
+
 def test_a_robot_that_dies_when_it_is_started_again_is_named(tmp_path: Path) -> None:
     restart = "faults=[{kind='restart', at_s=1, robots=[2]}]"
-    mission = Mission(tmp_path, restart, "clock.limit_s=20")
+    (tmp_path / "sitecustomize.py").write_text(SLOW_STARTER.format(marker=str(tmp_path / "started")))
+    path = os.pathsep.join([str(tmp_path), *filter(None, [os.environ.get("PYTHONPATH")])])
+    mission = Mission(tmp_path, restart, *CREEPING, environment={"PYTHONPATH": path})
     first = mission.await_child("robot_agent 2")
     while (second := mission.children().get("robot_agent 2")) in (first, None):
         assert mission.child.poll() is None
@@ -123,17 +141,19 @@ def test_a_stopped_process_ends_the_mission_after_its_lease(mission: Mission, vi
     _replayed(mission)
 
 
-def test_a_killed_robot_is_fenced_and_the_mission_goes_on(mission: Mission) -> None:
+def test_a_killed_robot_is_fenced_and_the_mission_goes_on(tmp_path: Path) -> None:
+    mission = Mission(tmp_path, *TO_ITS_END)
     mission.await_ticks()
     os.kill(mission.children()["robot_agent 3"], signal.SIGKILL)
     summary, said = mission.finish_and_say()
-    assert summary["outcome"] in ("arrived", "failed")
-    assert {"robot": 3, "why": "its process died"}.items() <= summary["lost"][-1].items()
+    assert summary["reason"] == "time limit of 60 s"
+    assert {lost["robot"]: lost["why"] for lost in summary["lost"]}[3] == "its process died"
     assert "the robot-3 process died (SIGKILL)" in said
     assert digest(_replayed(mission)) == summary["digest"]
 
 
-def test_a_stopped_robot_is_fenced_as_well(mission: Mission) -> None:
+def test_a_stopped_robot_is_fenced_as_well(tmp_path: Path) -> None:
+    mission = Mission(tmp_path, *TO_ITS_END, "clock.silence_s=4")
     mission.await_ticks()
     pid = mission.children()["robot_agent 2"]
     os.kill(pid, signal.SIGSTOP)

@@ -16,14 +16,14 @@ from onehop.mission.processes import free_endpoint
 from onehop.node.bus import LEASE_MS, open_client, open_router
 from onehop.node.identity import make_credentials
 from onehop.wire.log_reader import LogFile, digest
-from tests.live.mission import DEADLINE_S, Mission, gone, proven
+from tests.live.mission import CREEPING, DEADLINE_S, Mission, gone, proven
 from tests.onehop.scenes import field, log_of
 
 pytestmark = pytest.mark.live
 
 SIGNALS = [signal.SIGINT, signal.SIGTERM, signal.SIGHUP]
 
-SOON_S = LEASE_MS / 1000.0 + 8.0
+SOON_S = LEASE_MS / 1000.0 + 30.0
 """A stopped process's lease, and the end of the rest on a busy machine."""
 
 Start = Callable[..., Mission]
@@ -78,7 +78,7 @@ def test_a_mission_that_is_asked_to_end_finishes_its_log(
     start: Start, tmp_path: Path, number: signal.Signals
 ) -> None:
     """A terminal that closes says so more than once."""
-    mission = start("clock.limit_s=60")
+    mission = start(*CREEPING)
     mission.await_ticks()
     children = mission.children()
     for _ in range(3):
@@ -93,10 +93,10 @@ def test_a_mission_that_is_asked_to_end_finishes_its_log(
 
 
 def test_a_program_that_is_to_outlive_its_terminal_does(start: Start) -> None:
-    mission = start("clock.limit_s=5", shell="trap '' HUP")
-    mission.await_ticks()
+    mission = start("clock.limit_s=10", shell="trap '' HUP")
+    mission.await_ticks(0)
     mission.child.send_signal(signal.SIGHUP)
-    assert mission.finish()["reason"] == "time limit of 5 s"
+    assert mission.finish()["reason"] == "time limit of 10 s"
 
 
 @pytest.mark.campaign
@@ -171,10 +171,11 @@ def test_a_launcher_that_was_stopped_for_a_while_sees_the_mission_to_its_end(
     start: Start, tmp_path: Path
 ) -> None:
     """Robot 4 is stopped in its start, so that the world waits for it all the while."""
-    mission = start("clock.limit_s=20")
+    mission = start("clock.limit_s=10")
     robot = mission.await_child("robot_agent 4")
     os.kill(robot, signal.SIGSTOP)
     while not (mission.out / "mission.mcap").exists():
+        assert mission.child.poll() is None
         time.sleep(0.05)
     time.sleep(1.0)
     mission.child.send_signal(signal.SIGSTOP)
@@ -183,14 +184,14 @@ def test_a_launcher_that_was_stopped_for_a_while_sees_the_mission_to_its_end(
     time.sleep(1.0)
     os.kill(robot, signal.SIGCONT)
     summary = mission.finish()
-    assert summary["digest"] == log_of(field(tmp_path, "clock.limit_s=20"), tmp_path / "inline.mcap")
+    assert summary["digest"] == log_of(field(tmp_path, "clock.limit_s=10"), tmp_path / "inline.mcap")
 
 
 @pytest.mark.parametrize(
     "wait_s", [0.0, 0.8, *(pytest.param(wait_s, marks=pytest.mark.campaign) for wait_s in (0.4, 1.6))]
 )
 def test_a_world_that_is_stopped_in_its_start_ends_the_mission(start: Start, wait_s: float) -> None:
-    mission = start("clock.limit_s=600")
+    mission = start(*CREEPING)
     world = mission.await_child("world_server")
     time.sleep(wait_s)
     children = mission.children()
@@ -206,7 +207,7 @@ def test_a_world_that_is_stopped_in_its_start_ends_the_mission(start: Start, wai
 
 
 def test_a_full_disk_ends_the_mission_with_its_log_up_to_there(start: Start) -> None:
-    mission = start("clock.limit_s=60", shell="ulimit -f 200")  # kilobytes a file
+    mission = start(*CREEPING, shell="ulimit -f 200")  # kilobytes a file
     summary = mission.finish()
     assert summary["outcome"] == "aborted"
     assert summary["reason"].startswith(f"{mission.out / 'mission.mcap'}: File too large")
@@ -217,7 +218,7 @@ def test_a_full_disk_ends_the_mission_with_its_log_up_to_there(start: Start) -> 
 
 
 def test_a_folder_that_vanishes_ends_the_mission_with_the_reason(start: Start) -> None:
-    mission = start("clock.limit_s=600")
+    mission = start(*CREEPING)
     mission.await_ticks()
     mission.out.rename(mission.out.with_name("elsewhere"))
     for path in sorted(mission.out.with_name("elsewhere").rglob("*"), reverse=True):
@@ -229,8 +230,8 @@ def test_a_folder_that_vanishes_ends_the_mission_with_the_reason(start: Start) -
 
 
 def test_a_second_mission_into_the_same_folder_is_refused(start: Start, tmp_path: Path) -> None:
-    mission = start("clock.limit_s=20")
-    mission.await_ticks()
+    mission = start(*CREEPING)
+    mission.await_ticks(0)
     for driver in ("processes", "inline"):
         command = ["run", str(tmp_path / "field.toml"), "--driver", driver, "--out", str(mission.out)]
         second = subprocess.run(
@@ -241,8 +242,7 @@ def test_a_second_mission_into_the_same_folder_is_refused(start: Start, tmp_path
             f"onehop: {mission.out}: another mission or campaign is writing there; "
             "wait for its end, or give another --out\n"
         )
-    expected = log_of(field(tmp_path, "clock.limit_s=20"), tmp_path / "inline.mcap")
-    assert mission.finish()["digest"] == expected == digest(_replayed(mission))
+    assert mission.stop()["digest"] == digest(_replayed(mission))
 
 
 def test_few_descriptors_are_said_before_anything_starts(start: Start) -> None:
@@ -287,7 +287,7 @@ def test_a_process_that_cannot_be_imported_is_told_with_its_whole_traceback_kept
 
 
 def test_a_crash_in_machine_code_leaves_a_traceback(start: Start) -> None:
-    mission = start("clock.limit_s=60")
+    mission = start(*CREEPING)
     mission.await_ticks()
     os.kill(mission.children()["radio_proxy"], signal.SIGSEGV)
     summary = mission.finish()

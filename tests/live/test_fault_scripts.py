@@ -45,22 +45,23 @@ def state(pid: int) -> str:
 def test_a_robot_that_is_stopped_longer_than_its_lease_goes_on_as_the_same_process(
     tmp_path: Path,
 ) -> None:
-    """Another one holds the mission up meanwhile, each time for less than its own lease."""
+    """Two others hold the mission up meanwhile in turn, each for less than its own lease."""
     settings = (
-        "faults=[{kind='stop', at_s=1, robots=[2], duration_s=8}]", "clock.limit_s=12",
+        "faults=[{kind='stop', at_s=1, robots=[2], duration_s=15}]", "clock.limit_s=18",
         "clock.silence_s=20",
     )  # fmt: skip
     mission = Mission(tmp_path, *settings)
-    stopped, holder = mission.await_child("robot_agent 2"), mission.await_child("robot_agent 3")
+    stopped, *holders = (mission.await_child(f"robot_agent {number}") for number in (2, 3, 4))
     deadline = time.monotonic() + DEADLINE_S
     while state(stopped) != "T":
         assert time.monotonic() < deadline
-    for _ in range(2):
-        os.kill(holder, signal.SIGSTOP)
-        time.sleep(0.7 * LEASE_MS / 1000.0)
-        os.kill(holder, signal.SIGCONT)
-        time.sleep(0.05)
+    os.kill(holders[0], signal.SIGSTOP)
+    time.sleep(0.7 * LEASE_MS / 1000.0)
+    os.kill(holders[1], signal.SIGSTOP)
+    os.kill(holders[0], signal.SIGCONT)
+    time.sleep(0.7 * LEASE_MS / 1000.0)
     assert state(stopped) == "T"
+    os.kill(holders[1], signal.SIGCONT)
     summary = mission.finish()
     inline = log_of(field(tmp_path, *settings), tmp_path / "inline.mcap")
     assert summary["digest"] == inline

@@ -3,7 +3,6 @@
 import json
 import math
 import re
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -12,6 +11,7 @@ import pytest
 
 from onehop.analysis.difference import compare
 from onehop.analysis.log import open_log
+from onehop.checking import judge
 from onehop.contracts import topics
 from onehop.contracts.fault_section import KINDS, FaultSection, in_toml
 from onehop.drivers.replay import replay
@@ -19,7 +19,7 @@ from onehop.mission.injection import inject
 from onehop.mission.rendezvous import FILE, way_into
 from onehop.node.bus import open_client
 from onehop.wire.log_reader import LogFile, digest
-from tests.live.mission import DEADLINE_S, Mission, gone, proven
+from tests.live.mission import Mission, gone
 from tests.onehop.scenes import field, log_of
 
 pytestmark = pytest.mark.live
@@ -47,11 +47,11 @@ def onehop(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 def ended(mission: Mission) -> LogFile:
     """The log of a mission that is stopped now; it happens again, and every promise held."""
-    mission.child.send_signal(signal.SIGINT)
-    mission.child.communicate(timeout=DEADLINE_S)
-    log = proven(mission.out / "mission.mcap")
+    mission.stop()
+    log = LogFile(mission.out / "mission.mcap")
     report = replay(log)
     assert (report.divergences, report.flaws) == (0, [])
+    assert judge(log).violations == ()
     return log
 
 
@@ -117,22 +117,22 @@ def test_the_command_does_it_and_prints_the_line_that_repeats_it(
     assert onehop("fault", "kill", "1").stderr.startswith("onehop: fault: no mission runs; ")
 
 
-@pytest.mark.parametrize(
-    ("order", "said"),
-    [
-        (FaultSection("hold", robots=(9,)), "robots: robot 9 is not in the team"),
-        (FaultSection("continue", robots=(2,)), "robots: robot 2 is not stopped; one of nobody"),
-        (FaultSection("kidnap", robots=(2,), x=20.0, y=26.0), "x, y: .* the nearest free point is"),
-        (FaultSection("hold", robots=(2,), duration_s=math.nan), "duration_s: nan is out of range"),
-        (FaultSection("kill"), "robots: kill of nobody"),
-        (FaultSection("kill", on="formed"), "at_s: at_s and on at once"),
-    ],
-)
-def test_an_order_that_cannot_be_carried_out_is_refused_and_leaves_no_trace(
-    order: FaultSection, said: str, mission: Mission, tmp_path: Path
+REFUSED = [
+    (FaultSection("hold", robots=(9,)), "robots: robot 9 is not in the team"),
+    (FaultSection("continue", robots=(2,)), "robots: robot 2 is not stopped; one of nobody"),
+    (FaultSection("kidnap", robots=(2,), x=20.0, y=26.0), "x, y: .* the nearest free point is"),
+    (FaultSection("hold", robots=(2,), duration_s=math.nan), "duration_s: nan is out of range"),
+    (FaultSection("kill"), "robots: kill of nobody"),
+    (FaultSection("kill", on="formed"), "at_s: at_s and on at once"),
+]
+
+
+def test_orders_that_cannot_be_carried_out_are_refused_and_leave_no_trace(
+    mission: Mission, tmp_path: Path
 ) -> None:
-    answer = inject(way_into(mission.out), order)
-    assert re.match(said, answer.refusal)
+    way_in = way_into(mission.out)
+    for order, said in REFUSED:
+        assert re.match(said, inject(way_in, order).refusal), order
     log = ended(mission)
     assert repeated(tmp_path, log, "", tmp_path / "quiet.mcap") == digest(log)
 

@@ -28,10 +28,16 @@ FAULTS = """faults=[
 ]""".replace("\n", " ")
 
 
-def digest_of(out: Path, *words: str) -> str:
-    done = onehop("run", SIMPLE, "--no-view", "--json", "--out", out, *words)
+def run(out: Path, *words: str) -> dict[str, Any]:
+    """The summary of a mission."""
+    done = onehop("run", SIMPLE, "--no-view", "--no-figure", "--json", "--out", out, *words)
     assert done.stdout, done.stderr
     summary: dict[str, Any] = json.loads(done.stdout)
+    return summary
+
+
+def digest_of(out: Path, *words: str) -> str:
+    summary = run(out, *words)
     assert summary["outcome"] == "arrived"
     digest: str = summary["digest"]
     return digest
@@ -73,9 +79,7 @@ def test_one_that_does_not_die_makes_room_all_the_same(tmp_path: Path) -> None:
     stubborn = "import os, bare_robot; os.kill = print; raise SystemExit(bare_robot.main())"
     words = ("--set", 'faults=[{kind="restart", at_s=1.0, robots=[5]}]', "--set", "clock.limit_s=3")
     digests = [
-        json.loads(onehop("run", SIMPLE, "--json", "--out", tmp_path / f"{n}", *words, *more).stdout)[
-            "digest"
-        ]
+        run(tmp_path / f"{n}", *words, *more)["digest"]
         for n, more in enumerate(
             [("--driver", "inline"), robot_5(json.dumps(["python", "-c", stubborn]))]
         )
@@ -114,8 +118,8 @@ def test_a_command_that_is_nowhere_is_one_line(tmp_path: Path) -> None:
 def test_a_password_is_in_the_environment_and_not_on_the_command_line(tmp_path: Path) -> None:
     look = "import os, sys; print(len(os.environ['ONEHOP_PASSWORD']), *sys.argv[1:], os.getcwd())"
     words = robot_5(json.dumps(["python", "-c", look + "; sys.exit(7)", "mine"]))
-    done = onehop("run", SIMPLE, "--json", "--out", tmp_path, *words)
-    assert json.loads(done.stdout)["reason"].startswith("the robot-5 process died (exit status 7): 32 ")
+    reason = run(tmp_path, *words)["reason"]
+    assert reason.startswith("the robot-5 process died (exit status 7): 32 ")
     length, first, *rest = (tmp_path / "stderr" / "robot-5.txt").read_text().split()
     assert (length, first) == ("32", "mine")
     assert rest[0::2][:4] == ["--mission", "--lifeline", "--id", "--connect"]

@@ -20,11 +20,15 @@ ALL = (
 )  # fmt: skip
 
 
+def run_of(folder: Path) -> tuple[str | Path, ...]:
+    """The command that runs the small scene."""
+    return "run", folder / "field.toml", "--json", "--no-view", "--no-figure", "--out", folder / "out"
+
+
 def test_processes_find_what_is_installed_and_write_the_same_bytes(parts: Path, tmp_path: Path) -> None:
     digest = log_of(field(tmp_path, *ALL), tmp_path / "inline.mcap")
     wanted = [word for setting in ALL for word in ("--set", setting)]
-    run = "run", tmp_path / "field.toml", "--json", "--out", tmp_path / "out", *wanted
-    done = onehop(*run, PYTHONPATH=str(parts))
+    done = onehop(*run_of(tmp_path), *wanted, PYTHONPATH=str(parts))
     assert json.loads(done.stdout)["digest"] == digest, done.stderr
 
 
@@ -33,5 +37,5 @@ def test_radio_and_robots_look_in_the_folder_of_the_scenario_too(tmp_path: Path)
     wanted = ("gains.policy=own_part:Steady", "radio.propagation=own_part:Flat", "clock.limit_s=2")
     digest = log_of(field(tmp_path, *wanted), tmp_path / "inline.mcap")
     settings = [word for setting in wanted for word in ("--set", setting)]
-    done = onehop("run", tmp_path / "field.toml", "--json", "--out", tmp_path / "out", *settings)
+    done = onehop(*run_of(tmp_path), *settings)
     assert json.loads(done.stdout)["digest"] == digest, done.stderr

@@ -14,7 +14,7 @@ from onehop.mission.operator import STOPPED
 from onehop.node.bus import LEASE_MS
 from onehop.wire.codec import decode
 from onehop.wire.log_reader import LogFile, digest
-from tests.live.mission import DEADLINE_S, Mission, gone, proven
+from tests.live.mission import CREEPING, DEADLINE_S, Mission, gone, proven
 from tests.onehop.scenes import field, log_of
 from world_server.process_faults import RESTART_S
 
@@ -81,7 +81,7 @@ def test_a_mission_whose_launcher_is_stopped_ends_by_itself_when_it_cannot_go_on
     children = mission.children()
     mission.child.send_signal(signal.SIGSTOP)
     os.kill(children["radio_proxy"], signal.SIGKILL)
-    deadline = time.monotonic() + LEASE_MS / 1000.0 + 8.0
+    deadline = time.monotonic() + DEADLINE_S
     while any(state(pid) != "Z" for pid in children.values()):
         assert time.monotonic() < deadline
         time.sleep(0.05)
@@ -91,10 +91,10 @@ def test_a_mission_whose_launcher_is_stopped_ends_by_itself_when_it_cannot_go_on
     assert digest(LogFile(mission.out / "mission.mcap")) == summary["digest"]
 
 
-def test_a_process_that_somebody_starts_again_takes_part_as_after_a_restart(
-    mission: Mission,
-) -> None:
+def test_a_process_that_somebody_starts_again_takes_part_as_after_a_restart(tmp_path: Path) -> None:
     """As with a container: the same program with the same password, and no launcher that knows it."""
+    mission = Mission(tmp_path, *CREEPING)
+    mission.await_ticks()
     pid = mission.children()["robot_agent 3"]
     words = Path(f"/proc/{pid}/environ").read_text().split("\0")
     command = Path(f"/proc/{pid}/cmdline").read_text().split("\0")[:-1]
@@ -105,17 +105,55 @@ def test_a_process_that_somebody_starts_again_takes_part_as_after_a_restart(
         env=dict(word.split("=", 1) for word in words if "=" in word),
     )
     try:
-        summary, said = mission.finish_and_say()
+        mission.await_line("s: restart 3")
+        mission.await_ticks(mission.log_bytes() + 20_000)
+        summary = mission.stop()
     finally:
         again.kill()
         again.wait()
     log = LogFile(mission.out / "mission.mcap")
     assert digest(log) == summary["digest"]
     assert replay(log).divergences == 0
-    assert "s: restart 3" in said
     last = list(log.ticks())[-1]
     present = {one.robot: one.incarnation for one in decode(Truth, last.get("truth") or b"").present}
     assert present == {1: 0, 2: 0, 3: 1, 4: 0}
+
+
+FAINTING = """
+import os, signal
+from pathlib import Path
+from onehop.robot import Action, Program
+
+class Fainting(Program):
+    def __init__(self, briefing):
+        fainted = Path(__file__).with_name("fainted")
+        if briefing.robot == 2 and not fainted.exists():
+            fainted.touch()
+            os.kill(os.getpid(), signal.SIGSTOP)
+
+    def step(self, percept):
+        return Action()
+"""
+
+
+@pytest.mark.parametrize("mode", ["lockstep", "realtime"])
+def test_a_robot_that_loses_its_session_in_its_start_takes_part_all_the_same(
+    tmp_path: Path, mode: str
+) -> None:
+    """It has been briefed, and is not there yet: as when a busy machine stands still for a lease."""
+    (tmp_path / "fainting.py").write_text(FAINTING)
+    settings = ("team.program='fainting:Fainting'", f"clock.mode='{mode}'", "clock.limit_s=2")
+    mission = Mission(tmp_path, *settings)
+    pid = mission.await_child("robot_agent 2")
+    deadline = time.monotonic() + DEADLINE_S
+    while not ((tmp_path / "fainted").exists() and state(pid) == "T"):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    time.sleep(1.5 * LEASE_MS / 1000.0)
+    os.kill(pid, signal.SIGCONT)
+    summary = mission.finish()
+    assert {one["why"] for one in summary["lost"]} == {"did not arrive"}
+    proven(mission.out / "mission.mcap")
 
 
 @pytest.mark.campaign

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from onehop.wire.log_reader import digest
-from tests.live.mission import DEADLINE_S, Mission, contents, gone, proven
+from tests.live.mission import CREEPING, Mission, contents, gone, proven
 from tests.onehop.scenes import field, log_of
 
 pytestmark = pytest.mark.live
@@ -19,7 +19,7 @@ pytestmark = pytest.mark.live
 
 @pytest.fixture
 def mission(tmp_path: Path) -> Mission:
-    return Mission(tmp_path, "clock.limit_s=60")
+    return Mission(tmp_path, *CREEPING)
 
 
 FAULTS = (
@@ -31,8 +31,9 @@ FAULTS = (
 @pytest.mark.parametrize("settings", [(), (FAULTS, "clock.limit_s=20")], ids=["quiet", "faults"])
 def test_processes_log_the_same_bytes_as_one_process(tmp_path: Path, settings: tuple[str, ...]) -> None:
     inline = log_of(field(tmp_path, *settings), tmp_path / "inline.mcap")
-    summary = Mission(tmp_path, *settings).finish()
+    summary = Mission(tmp_path, *settings, options=("--view", "--figure")).finish()
     assert summary["digest"] == inline
+    assert (tmp_path / "out" / "trajectory.png").exists()
     assert digest(proven(tmp_path / "out" / "mission.mcap")) == inline
     names = [process["name"] for process in summary["processes"]]
     assert names[:7] == ["world", "radio", "recorder", "robot-1", "robot-2", "robot-3", "robot-4"]
@@ -54,8 +55,7 @@ def test_a_password_is_in_the_environment_of_its_process_alone(mission: Mission)
         command = Path(f"/proc/{pid}/cmdline").read_text()
         assert not any(word in command for word in passwords.values())
         assert Path(f"/proc/{pid}/environ").stat().st_mode & 0o077 == 0
-    mission.child.send_signal(signal.SIGINT)
-    mission.child.communicate(timeout=DEADLINE_S)
+    mission.stop()
     assert not any(word.encode() in contents(mission.out) for word in passwords.values())
 
 
@@ -83,9 +83,7 @@ def test_a_killed_launcher_leaves_no_process_behind(mission: Mission) -> None:
 def test_ctrl_c_finishes_the_log_and_exits_130(mission: Mission) -> None:
     mission.await_ticks()
     children = mission.children()
-    mission.child.send_signal(signal.SIGINT)
-    mission.child.communicate(timeout=DEADLINE_S)
-    assert mission.child.returncode == 130
+    mission.stop()
     assert gone(list(children.values()))
     log = proven(mission.out / "mission.mcap")
     assert digest(log)

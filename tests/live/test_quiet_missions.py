@@ -33,7 +33,8 @@ def _words_of(folder: Path, number: int) -> list[str]:
     scenario, out = folder / f"{number}.toml", folder / f"{number}"
     scenario.write_text(TINY.format(robots=1 + number % 2, limit_s=0.05 * (1 + number % 8)))
     record = "--record" if number % 4 == 0 else "--no-record"
-    command = [sys.executable, "-m", "onehop", "run", str(scenario), "--no-view", record]
+    figure = "--figure" if number == 0 else "--no-figure"
+    command = [sys.executable, "-m", "onehop", "run", str(scenario), "--no-view", figure, record]
     result = subprocess.run(
         [*command, "--out", str(out)], capture_output=True, text=True, timeout=60.0, check=False
     )

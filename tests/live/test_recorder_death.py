@@ -10,7 +10,7 @@ import pytest
 from onehop.analysis import open_log
 from onehop.analysis.salvage import salvage
 from onehop.wire.log_reader import LogFile
-from tests.live.mission import Mission, proven
+from tests.live.mission import CREEPING, Mission, proven
 
 pytestmark = [pytest.mark.live, pytest.mark.slow]
 
@@ -23,7 +23,7 @@ ALLOWED_LOSS = 5
 @pytest.mark.parametrize("number", range(KILLS))
 def test_a_killed_recorder_loses_five_ticks_at_most(number: int, tmp_path: Path) -> None:
     draw = np.random.default_rng(number)
-    mission = Mission(tmp_path, "clock.limit_s=60")
+    mission = Mission(tmp_path, *CREEPING)
     mission.await_ticks(int(draw.integers(20_000, 400_000)))
     os.kill(mission.children()["onehop.recorder"], signal.SIGKILL)
     summary = mission.finish()

@@ -54,7 +54,7 @@ def driven(endpoint: str, tmp_path: Path) -> Mission:
     """A mission in real time whose robot 4 is driven by ROS 2; it lasts until it is told to end."""
     parameters = f'parameters={{router="{endpoint}", hold_s=1.0}}'
     robots = f'robots=[{{id=4, program="onehop.ros2.robot:Ros2Robot", {parameters}}}]'
-    options = ("--clock", "realtime", "--ros2", "--ros-router", endpoint, "--no-view")
+    options = ("--clock", "realtime", "--ros2", "--ros-router", endpoint)
     return Mission(tmp_path, robots, "goal.x=39", "goal.y=39", options=options)
 
 

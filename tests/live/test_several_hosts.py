@@ -24,7 +24,7 @@ from onehop.mission.injection import inject
 from onehop.mission.rendezvous import way_into
 from onehop.wire.codec import decode
 from tests.live.hosts import LINK, Router, ended, hosts, made_keys, stranger, tls_endpoint
-from tests.live.mission import DEADLINE_S, Mission, contents, gone, proven
+from tests.live.mission import CREEPING, DEADLINE_S, Mission, contents, gone, proven
 from tests.onehop.scenes import field, log_of
 
 pytestmark = pytest.mark.live
@@ -32,8 +32,6 @@ pytestmark = pytest.mark.live
 SHORT = ("team.size=6", "clock.limit_s=4")
 
 LONGER = ("team.size=6", "clock.limit_s=15")
-
-SLOWLY = ("robot.leader_speed=0.05", "clock.limit_s=600")
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +101,7 @@ def rogues(endpoint: str, keys: Path, foreign: Path) -> Iterator[None]:
     def pester(keys: Path | None, name: str, own_id: str | None, *puts: tuple[str, int]) -> None:
         while not over.is_set():
             with contextlib.suppress(zenoh.ZError):
-                session = stranger(endpoint, keys, name, own_id)
+                session = stranger(endpoint, keys, name, own_id, timeout_ms=1000)
                 session.declare_subscriber("**", zenoh.handlers.FifoChannel(10))
                 ends = time.monotonic() + 0.5
                 while time.monotonic() < ends and not over.is_set():
@@ -157,7 +155,7 @@ def test_with_a_router_of_its_own_the_bytes_are_the_same(tmp_path: Path, keys: P
 def running(tmp_path: Path, keys: Path) -> Iterator[tuple[Mission, str, "subprocess.Popen[str]"]]:
     """A slow mission whose robot 3 is a process of somebody else's."""
     endpoint = tls_endpoint()
-    mission = Mission(tmp_path, *SLOWLY, options=on_bus(endpoint, keys, "3", "--mission", "field"))
+    mission = Mission(tmp_path, *CREEPING, options=on_bus(endpoint, keys, "3", "--mission", "field"))
     child = started(robot(3, endpoint, keys, "--mission", "field"))
     with ended(child):
         mission.await_ticks()
@@ -170,14 +168,12 @@ def test_a_robot_of_another_host_dies_and_comes_again(
     mission, endpoint, child = running
     child.kill()
     child.wait()
-    _await_line(mission, "robot-3 is gone from the bus")
+    mission.await_line("robot-3 is gone from the bus")
     with ended(started(robot(3, endpoint, keys, "--mission", "field"))):
-        _await_line(mission, "restart.* 3")
+        mission.await_line("restart.* 3")
         answer = inject(way_into(mission.out), FaultSection("hold", robots=(3,), duration_s=0.5))
         assert answer.refusal == ""
-        mission.child.send_signal(signal.SIGINT)
-        mission.child.communicate(timeout=DEADLINE_S)
-    assert mission.child.returncode == 130
+        mission.stop()
     log = proven(tmp_path / "out" / "mission.mcap")
     truths = [decode(Truth, tick.get("truth") or b"") for tick in log.ticks()]
     done = [(fault.kind, fault.robots) for truth in truths for fault in truth.faults]
@@ -198,8 +194,7 @@ def test_no_secret_of_a_mission_is_seen_by_others(
         assert "ONEHOP_PASSWORD" not in seen
         assert "ONEHOP_CREDENTIALS" not in seen
         assert not any(secret in seen for secret in secrets)
-    mission.child.send_signal(signal.SIGINT)
-    mission.child.communicate(timeout=DEADLINE_S)
+    mission.stop()
     written = contents(mission.out)
     assert not any(secret.encode() in written for secret in secrets)
     assert {path.stat().st_mode & 0o777 for path in keys.rglob("*.pem")} == {0o600}
@@ -217,7 +212,7 @@ def test_who_does_not_come_in_time_is_named(tmp_path: Path, keys: Path) -> None:
 
 def test_ctrl_c_ends_a_mission_that_waits(tmp_path: Path, keys: Path) -> None:
     mission = Mission(tmp_path, options=on_bus(tls_endpoint(), keys, "3"))
-    _await_line(mission, "waiting for robot-3")
+    mission.await_line("waiting for robot-3")
     children = mission.children()
     mission.child.send_signal(signal.SIGINT)
     assert mission.child.wait(DEADLINE_S) == 130
@@ -229,7 +224,7 @@ def test_ctrl_c_ends_a_mission_that_waits(tmp_path: Path, keys: Path) -> None:
 def test_a_port_that_is_taken_is_one_line(tmp_path: Path, keys: Path) -> None:
     endpoint = tls_endpoint()
     with ended(started(robot(3, endpoint, keys))):
-        first = Mission(tmp_path, *SLOWLY, options=on_bus(endpoint, keys, "3"))
+        first = Mission(tmp_path, *CREEPING, options=on_bus(endpoint, keys, "3"))
         first.await_ticks()
         folder = tmp_path / "second"
         folder.mkdir()
@@ -237,12 +232,3 @@ def test_a_port_that_is_taken_is_one_line(tmp_path: Path, keys: Path) -> None:
             timeout=DEADLINE_S
         )
     assert said.splitlines()[-1] == f"onehop: --bus {endpoint}: somebody listens there; another port"
-
-
-def _await_line(mission: Mission, pattern: str) -> None:
-    """Wait until the mission says something, on stderr."""
-    assert mission.child.stderr is not None
-    for line in mission.child.stderr:
-        if re.search(pattern, line):
-            return
-    raise AssertionError(f"nothing was said of {pattern!r}")

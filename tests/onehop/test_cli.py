@@ -321,8 +321,10 @@ def test_a_name_that_does_not_print_is_shown_in_one_line(tmp_path: Path) -> None
 def test_an_inline_mission_that_is_asked_to_end_finishes_its_log(
     tmp_path: Path, number: signal.Signals
 ) -> None:
+    """Its leader creeps: it would be over before a busy machine sends a signal."""
     (tmp_path / "field.toml").write_text(FIELD)
-    command = ["run", "field.toml", "--driver", "inline", "--out", "out"]
+    creeping = ["--set", "robot.leader_speed=0.05", "--set", "clock.limit_s=600"]
+    command = ["run", "field.toml", "--driver", "inline", "--out", "out", *creeping]
     child = subprocess.Popen(
         [sys.executable, "-m", "onehop", *command], cwd=tmp_path, stderr=subprocess.PIPE, text=True
     )

@@ -69,4 +69,4 @@ def test_a_scheduler_that_is_not_there_is_one_line() -> None:
     started = time.monotonic()
     with pytest.raises(InputError, match=r"--dask tcp://127\.0\.0\.1:1: "):
         list(on_dask(errands.double, range(2), "tcp://127.0.0.1:1"))
-    assert time.monotonic() - started < 30.0
+    assert time.monotonic() - started < 60.0

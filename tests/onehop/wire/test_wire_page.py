@@ -27,7 +27,6 @@ from onehop.node.rights import rights
 from onehop.wire.codec import decode, encode
 from onehop.wire.journal import Digest, Journal
 from onehop.wire.spoken import failed
-from robot_agent.process import REUNION_S
 from world_server.briefings import ANSWERS
 from world_server.process import START_S
 
@@ -193,7 +192,7 @@ def test_the_numbers_are_those_of_the_code() -> None:
     assert f"answers each process {ANSWERS} times" in PAGE
     assert f"have {START_S:g} s to get so far" in PAGE
     assert f"a lease ({bus.LEASE_MS / 1000:g} s)" in PAGE
-    assert f"waits {REUNION_S:g} s" in PAGE
+    assert f"waits {startup.REUNION_S:g} s" in PAGE
     assert f"some {LONGEST - len(failed(''))} letters" in PAGE
     assert f"exit with status {startup.PROGRAM_FAILED}" in PAGE
     assert f"{startup.WORLD_IS_GONE}: the world has gone" in PAGE
