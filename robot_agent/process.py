@@ -45,7 +45,7 @@ def main() -> int:
 
 
 WAKE_S = 1.0
-"""How long a robot that was cut off, and has found the world, waits for it to say that it is still in the
+"""How long a robot that was cut off, and has found the world, waits to hear that it is still in the
 mission [s]: all have lost the bus, with its router. Else it joins again, as one that knows nothing."""
 
 
