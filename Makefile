@@ -13,9 +13,9 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # Tests in which other people's packages have a part: formats, kernels, figures; the bus, pages, a cluster.
 FOREIGN := tests/world tests/onehop/analysis tests/onehop/commands tests/onehop/contracts \
-    tests/onehop/drivers tests/onehop/live tests/onehop/maps tests/onehop/mission tests/onehop/plugins \
-    tests/onehop/ros2 tests/onehop/scenario tests/onehop/wire tests/onehop/test_*.py tests/test_*.py
-FOREIGN_PROCESSES := tests/live/test_processes.py tests/live/test_live_server.py tests/onehop/campaign
+    tests/onehop/live tests/onehop/maps tests/onehop/mission tests/onehop/plugins tests/onehop/ros2 \
+    tests/onehop/scenario tests/onehop/wire tests/onehop/test_*.py
+FOREIGN_PROCESSES := tests/live/test_live_server.py tests/onehop/campaign
 
 .PHONY: setup demo test check fast slow live lowest lowest-foreign lowest-constraints campaign study rust bench fuzz compose-demo compose-faults clean
 
