@@ -1,5 +1,7 @@
 """Who may say and hear what: the router holds everyone to the table, on loopback too."""
 
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -197,3 +199,28 @@ def test_a_session_closes_though_nobody_has_made_room_for_its_messages(
         world._alarm.ring_by(0.0)  # and its thread waits for room
         time.sleep(0.1)
     assert "alarm" not in [thread.name for thread in threading.enumerate()]
+
+
+SESSIONS = """
+from resource import getpagesize
+from pathlib import Path
+from onehop.node.bus import open_client
+
+def opened(times):
+    for _ in range(times):
+        with open_client("m", {endpoint!r}, "operator", {word!r}) as bus:
+            bus.publisher("from/operator/word")(b"")
+    return int(Path("/proc/self/statm").read_text().split()[1]) * getpagesize()
+
+before = opened(50)
+print(opened(150) - before)
+"""
+
+
+def test_a_session_that_is_closed_leaves_no_memory_behind() -> None:
+    """A program may launch thousands of missions: a publisher left open would keep 13 kB of each."""
+    word = make_credentials(["operator"])["operator"]
+    with open_router("m", endpoint := free_endpoint(), {"operator": word}):
+        script = SESSIONS.format(endpoint=endpoint, word=word)
+        told = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
+    assert int(told.stdout) / 150 < 4096
