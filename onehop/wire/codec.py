@@ -5,6 +5,7 @@ an unknown or missing key, and a value of another type; the one liberty is a who
 is due. Arrays of laser ranges travel as little-endian float32 bytes.
 """
 
+import threading
 from typing import Any, TypeVar
 
 import msgpack
@@ -43,6 +44,9 @@ UNPACK_REFUSALS = (ValueError, TypeError, msgpack.UnpackException, RecursionErro
 
 _ENCODER = msgspec.msgpack.Encoder(enc_hook=_to_wire)
 _DECODERS: dict[type, msgspec.msgpack.Decoder[Any]] = {}
+_MAKING_ONE = threading.Lock()
+"""msgspec fills in what it knows of a type while it makes the first decoder for it, and others run
+meanwhile: a second decoder, for a message with the same type in it, would crash the process."""
 
 encode = _ENCODER.encode
 """A contract value as wire bytes."""
@@ -53,9 +57,7 @@ def decode(kind: type[M], data: bytes) -> M:
 
     Raises DecodeError, with the reason in one line, for anything that `encode` would not have made.
     """
-    decoder = _DECODERS.get(kind)
-    if decoder is None:
-        decoder = _DECODERS[kind] = msgspec.msgpack.Decoder(kind, dec_hook=_from_wire)
+    decoder = _DECODERS.get(kind) or _decoder(kind)
     try:
         if data[1:4] == _VERSION_PREFIX:
             message: M = decoder.decode(data)
@@ -63,6 +65,14 @@ def decode(kind: type[M], data: bytes) -> M:
     except REFUSALS as error:
         raise DecodeError(f"{kind.__name__}: {printable(str(error))}") from None
     raise DecodeError(f"{kind.__name__}: {_version_problem(data)}")
+
+
+def _decoder(kind: type[Wire]) -> msgspec.msgpack.Decoder[Any]:
+    """The decoder of a type, made once."""
+    with _MAKING_ONE:
+        if kind not in _DECODERS:
+            _DECODERS[kind] = msgspec.msgpack.Decoder(kind, dec_hook=_from_wire)
+        return _DECODERS[kind]
 
 
 def _version_problem(data: bytes) -> str:

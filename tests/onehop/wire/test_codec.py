@@ -1,6 +1,8 @@
 """The wire format: what goes in comes out, and nothing else gets in."""
 
 import math
+import subprocess
+import sys
 
 import msgpack
 import numpy as np
@@ -162,3 +164,36 @@ def test_a_whole_number_stands_for_a_float() -> None:
     truth = Truth(3, 150, (), (), (), (Jam(1.0, 2.0, 3.0, -60.0),), (), ())
     fields = {**msgpack.unpackb(encode(truth)), "jams": [jam]}
     assert decode(Truth, msgpack.packb(fields)) == truth
+
+
+THREADS = """
+import sys, threading
+from onehop.contracts.geometry import Pose, Twist
+from onehop.contracts.messages import Presence, Truth
+from onehop.wire.codec import decode, encode
+
+one = Presence(1, 0, Pose(0.0, 0.0, 0.0), Twist(0.0, 0.0), False)
+truth = Truth(1, 1, (one,), (), (), (), (), ())
+data = encode(truth)
+sys.setswitchinterval(1e-6)
+together = threading.Barrier(4)
+
+def work():
+    together.wait()
+    assert decode(Truth, data) == truth
+
+threads = [threading.Thread(target=work) for _ in range(4)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join()
+"""
+
+
+def test_threads_may_decode_a_first_message_at_the_same_time() -> None:
+    """As the readers of two logs do; msgspec by itself crashes the process, nearly every time."""
+    for _ in range(3):
+        done = subprocess.run(
+            [sys.executable, "-c", THREADS], capture_output=True, text=True, check=False
+        )
+        assert (done.returncode, done.stderr) == (0, "")
