@@ -37,7 +37,7 @@ def bridge(ros2: Ros2, folder: Path) -> Iterator[None]:
     command = [sys.executable, "-m", "onehop.ros2", str(log), "--router", ros2.router]
     command += ["--domain", str(ros2.domain), "--distro", ros2.distro, "--until-stdin-closes", "--new"]
     with subprocess.Popen(
-        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, start_new_session=True
+        command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, process_group=0
     ) as child:
         assert child.stdin is not None
         assert child.stdout is not None

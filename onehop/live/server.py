@@ -25,9 +25,10 @@ from onehop.live.requests import LONGEST_BYTES
 from onehop.live.source import Source
 from onehop.live.viewer import Viewer
 from onehop.live.watchers import Watchers
+from onehop.node import startup
 
 NICE = 5
-"""The mission comes first: what is shown of it gets the processor when it leaves some."""
+"""Of a log, or of a mission that leaves processor time by itself, since it goes by the wall clock."""
 
 CLOSE_S = 1
 """How long open connections may take to end [s]."""
@@ -89,7 +90,9 @@ class LiveServer:
         self._socket.close()
 
     def _run(self) -> None:
-        if hasattr(os, "setpriority"):
+        if self._hand is not None and self._hand.is_paced:
+            startup.give_way()
+        elif hasattr(os, "setpriority"):
             with contextlib.suppress(OSError):  # on Linux it is of this thread alone
                 os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), NICE)
         asyncio.run(self._serve())

@@ -25,7 +25,7 @@ from onehop.wire.log_reader import forged
 from onehop.wire.logged import decoded
 from onehop.wire.selection import Selected, one_of
 
-LOOK_S = 1.0 / 20.0
+LOOK_S = 1.0 / 15.0
 """How often a log that is written is looked at [s]."""
 
 TICKS_AT_ONCE = 200

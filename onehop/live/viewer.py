@@ -33,8 +33,8 @@ from onehop.live.source import Source
 from onehop.live.story import CHARTS
 from onehop.live.watchers import Watchers
 
-FRAME_S = 1.0 / 20.0
-"""Least time between two frames [s]: 20 a second look smooth, since the page moves robots in between."""
+FRAME_S = 1.0 / 15.0
+"""Least time between two frames [s]: 15 a second look smooth, since the page moves robots in between."""
 
 EVENTS_S = 0.25
 """Least time between two looks at the narrative [s]: a team in trouble notes something every tick."""

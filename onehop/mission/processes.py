@@ -207,7 +207,7 @@ class ProcessGroup:
                 pass_fds=(self._lifeline, *inherited),
                 env=environment,
                 cwd=folder,
-                start_new_session=True,
+                process_group=0,  # Ctrl-C is the launcher's; a session of its own would cost it 5 %
             )
         before = self._children.get(name)
         self._children[name] = _Child(process, before.incarnation + 1 if before else 0)

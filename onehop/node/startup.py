@@ -86,6 +86,18 @@ def start(options: argparse.Namespace) -> None:
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+def give_way() -> None:
+    """Let this thread, and those that it will start, run when nothing else wants to (Linux: SCHED_IDLE).
+
+    A mission in lock-step takes all of the processors, and each of its processes is waited for by all:
+    what only looks at it must not hold up any. They have to be of one session for that, since Linux
+    shares the processors among sessions first (sched(7), autogroup).
+    """
+    if hasattr(os, "SCHED_IDLE"):
+        with contextlib.suppress(OSError):
+            os.sched_setscheduler(0, os.SCHED_IDLE, os.sched_param(0))
+
+
 def be_on_time(is_ours: bool = True) -> None:
     """Let this process run as soon as it wakes up: it has a schedule.
 

@@ -16,6 +16,7 @@ from onehop.analysis.log import Log
 from onehop.analysis.ros2.publications import DEPTH, LASTING_DEPTH, Publications, lasts
 from onehop.contracts import topics
 from onehop.contracts.errors import DecodeError
+from onehop.node import startup
 from onehop.ros2.node import RosNode
 from onehop.ros2.rmw import Qos
 from onehop.wire.log_reader import LoggedTick, forged
@@ -63,6 +64,8 @@ class Bridge:
     def _read_on(self, log: Log) -> bool:
         """Publish what is new; whether all of it was published whole."""
         if self._publications is None:
+            if log.torn and not log.scenario.clock.is_realtime:
+                startup.give_way()
             self._publications = Publications(log, self._store)
         last = self._growing.last_tick
         whole_from = self._next if last - self._next < MOST_WHOLE else last

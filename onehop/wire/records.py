@@ -28,7 +28,7 @@ MAGIC = b"\x89MCAP0\r\n"
 MAX_CHUNK_BYTES = 1 << 28
 """Longest chunk that is unpacked, and longest other record that is read [B]: ours have 1 MiB."""
 
-_RECORD = struct.Struct("<BQ")
+RECORD = struct.Struct("<BQ")
 """Opcode and length [B] before every record."""
 
 _CHUNK = struct.Struct("<QQQII")
@@ -45,6 +45,9 @@ _CHANNEL = struct.Struct("<HHI")
 
 MESSAGE = struct.Struct("<HIQQ")
 """Head of a message: channel, sequence, log time, publish time; the data follows."""
+
+MESSAGE_RECORD = struct.Struct("<BQHIQ")
+"""How the record of a message begins: opcode, length, channel, sequence, log time."""
 
 _NOT_PARSABLE = (McapError, struct.error, ValueError)
 """What mcap raises for the content of a record that is none."""
@@ -97,10 +100,10 @@ def walk(stream: BinaryIO, start: int = len(MAGIC)) -> Iterator[Record]:
     stream.seek(max(0, end - len(MAGIC)))
     finished = end >= 2 * len(MAGIC) and stream.read() == MAGIC
     at = start
-    while at + _RECORD.size <= end:
+    while at + RECORD.size <= end:
         stream.seek(at)
-        opcode, length = _RECORD.unpack(stream.read(_RECORD.size))
-        record = Record(opcode, at, at + _RECORD.size, length)
+        opcode, length = RECORD.unpack(stream.read(RECORD.size))
+        record = Record(opcode, at, at + RECORD.size, length)
         if record.end > end:
             break
         if not opcode:
@@ -188,16 +191,21 @@ _UNPACKERS: dict[bytes, Callable[[bytes, int], bytes]] = {b"": _plain, b"zstd": 
 
 def records_in(data: bytes) -> Iterator[tuple[int, int, int]]:
     """(opcode, begin, end) of the content of each record in `data`. Raises RecordError."""
-    unpack, length, at = _RECORD.unpack_from, len(data), 0
-    while at + _RECORD.size <= length:
-        opcode, size = unpack(data, at)
-        begin = at + _RECORD.size
-        at = begin + size
-        if at > length or not opcode or (opcode == Opcode.MESSAGE and size < MESSAGE.size):
-            raise RecordError("no record where one should be")
+    at = 0
+    while at < len(data):
+        opcode, begin, at = record_at(data, at)
         yield opcode, begin, at
-    if at != length:
+
+
+def record_at(data: bytes, at: int) -> tuple[int, int, int]:
+    """(opcode, begin, end) of the content of the record at a byte. Raises RecordError."""
+    begin = at + RECORD.size
+    if begin > len(data):
         raise RecordError("it ends within a record")
+    opcode, size = RECORD.unpack_from(data, at)
+    if begin + size > len(data) or not opcode or (opcode == Opcode.MESSAGE and size < MESSAGE.size):
+        raise RecordError("no record where one should be")
+    return opcode, begin, begin + size
 
 
 def topic_of(content: bytes) -> tuple[int, str]:

@@ -16,7 +16,7 @@ from onehop.contracts import topics
 from onehop.contracts.printable import printable
 from onehop.wire.contents import Contents, damaged, records_of
 from onehop.wire.log_writer import LOG_EPOCH_NS
-from onehop.wire.records import MESSAGE, RecordError, records_in, topic_of
+from onehop.wire.records import MESSAGE, MESSAGE_RECORD, RECORD, RecordError, record_at, topic_of
 
 WIRE = topics.wire("")
 """Beginning of the topics of wire channels."""
@@ -32,6 +32,12 @@ class Selected(NamedTuple):
     key: str
     data: bytes
 
+
+HEADS = RECORD.size + MESSAGE.size
+"""What comes before the data of a message [B]."""
+
+MESSAGE_OPCODE = int(Opcode.MESSAGE)
+"""As a plain number: it is compared for every message."""
 
 Wanted = Callable[[str], bool]
 """Says of a bus key whether its messages are wanted."""
@@ -110,21 +116,27 @@ class _Reader:
             self._keys[channel] = key
 
     def messages(self, data: bytes) -> Iterator[Selected]:
-        """The wanted messages among records."""
-        head, keys, size = MESSAGE.unpack_from, self._keys, MESSAGE.size
+        """The wanted messages among records: one look at each, since a log is little but messages."""
+        unpack, keys, known = MESSAGE_RECORD.unpack_from, self._keys, self._topics
         first, last = self._first_tick, self._last_tick
-        for opcode, begin, end in records_in(data):
-            if opcode == Opcode.MESSAGE:
-                channel, tick, time_ns, _ = head(data, begin)
-                if channel in keys:
-                    if tick != self._tick or time_ns != self._time_ns:
-                        self._on_tick(tick, time_ns)
-                    if first <= tick <= last:
-                        yield Selected(tick, keys[channel], data[begin + size : end])
-                elif channel not in self._topics:
-                    raise RecordError(f"a message of channel {channel}, which there is not")
-            elif opcode == Opcode.CHANNEL:
-                self.learn(*topic_of(data[begin:end]))
+        at, length = 0, len(data)
+        while at < length:
+            if at + MESSAGE_RECORD.size <= length:
+                opcode, size, channel, tick, time_ns = unpack(data, at)
+                begin, end = at + HEADS, at + RECORD.size + size
+                if opcode == MESSAGE_OPCODE and begin <= end <= length:
+                    at = end
+                    if channel in keys:
+                        if tick != self._tick or time_ns != self._time_ns:
+                            self._on_tick(tick, time_ns)
+                        if first <= tick <= last:
+                            yield Selected(tick, keys[channel], data[begin:end])
+                    elif channel not in known:
+                        raise RecordError(f"a message of channel {channel}, which there is not")
+                    continue
+            opcode, begin, at = record_at(data, at)
+            if opcode == Opcode.CHANNEL:
+                self.learn(*topic_of(data[begin:at]))
 
     def _on_tick(self, tick: int, time_ns: int) -> None:
         if time_ns != LOG_EPOCH_NS + tick * self._period_ns:
