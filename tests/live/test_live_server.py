@@ -6,6 +6,7 @@ import os
 import shlex
 import signal
 import socket
+import threading
 from collections.abc import Iterator
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -15,6 +16,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from onehop.live.guard import Address
+from onehop.live.hand import Hand
 from onehop.live.server import LiveServer
 from onehop.live.source import Source
 from onehop.wire.log_reader import LogFile, digest
@@ -38,6 +40,18 @@ def server(log_path: Path) -> Iterator[LiveServer]:
     source.open()
     with LiveServer([source], Address()) as serving:
         yield serving
+
+
+@pytest.mark.skipif(not hasattr(os, "SCHED_IDLE"), reason="Linux has it")
+@pytest.mark.parametrize("hand", [None, Hand((), is_paced=False), Hand((), is_paced=True)])
+def test_a_page_gives_way_to_a_mission_in_lock_step_alone(log_path: Path, hand: Hand | None) -> None:
+    source = Source(log_path)
+    source.open()
+    gives_way = hand is not None and hand.is_paced
+    with LiveServer([source], Address(), hand):
+        threads = {one.name: one.native_id for one in threading.enumerate()}
+        policies = {os.sched_getscheduler(threads[name] or 0) for name in ("live page", "reader")}
+        assert policies == {os.SCHED_IDLE if gives_way else os.SCHED_OTHER}
 
 
 def get(url: str, path: str, host: str | None = None) -> tuple[int, dict[str, str], bytes]:
