@@ -1,7 +1,8 @@
 """Do to containers what people do to them, and see that it is what the same faults are without them.
 
-One mission of compose.yaml: a container is paused for a moment, one killed, one restarted, one paused
-for longer than its lease, one cut from the network. The image is there (docker/compose-demo.sh).
+One mission of map1, whose leader creeps so that it does not end by itself: a container is paused for a
+moment, one killed, one restarted, one paused for longer than its lease, one cut from the network. The
+image is there (docker/compose-demo.sh).
 """
 
 import json
@@ -13,6 +14,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 
+from onehop.commands.compose import compose as write_compose_file
 from onehop.contracts.messages import Truth
 from onehop.drivers.replay import replay
 from onehop.node.bus import LEASE_MS
@@ -20,6 +22,9 @@ from onehop.wire.codec import decode
 from onehop.wire.log_reader import LogFile
 
 PROJECT = "onehop-faults"
+FILE = Path(".compose-faults.yaml")
+SCENARIO, CREEPING = Path("scenarios/map1.toml"), Path("runs/creeping/map1.toml")
+CREEPS = "[robot]\nleader_speed = 0.05\n[clock]\nlimit_s = 3600\n"
 OUT = Path("runs/compose")
 LEASE_S = LEASE_MS / 1000.0
 GROWN_BYTES = 200_000
@@ -34,7 +39,7 @@ DEPARTURES = {3: [DIED], 4: [DIED], 5: [DIED], 6: [DIED]}
 
 def compose(*words: str) -> None:
     program = ["docker", "compose"] if _has_plugin() else ["docker-compose"]
-    command = [*program, "--project-name", PROJECT, *words]
+    command = [*program, "--project-name", PROJECT, "--file", str(FILE), *words]
     subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
@@ -122,6 +127,9 @@ def main() -> int:
         os.environ["ONEHOP_UID"] = str(os.getuid())
     log.unlink(missing_ok=True)
     summary.unlink(missing_ok=True)
+    CREEPING.parent.mkdir(exist_ok=True)
+    CREEPING.write_text(f"{SCENARIO.read_text()}\n{CREEPS}")
+    write_compose_file(CREEPING, FILE)
     try:
         compose("up", "--detach", "--no-build")
         wait("the mission is under way", lambda: log.exists() and log.stat().st_size > GROWN_BYTES)
@@ -130,6 +138,7 @@ def main() -> int:
         wait("the recorder has finished", summary.exists)
     finally:
         compose("down", "--volumes", "--timeout", "2")
+        FILE.unlink()
     outcome = json.loads(summary.read_text())
     print(f"{'outcome':20} {outcome['outcome']}: {outcome['reason']}")
     found = findings()
