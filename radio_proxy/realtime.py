@@ -31,9 +31,6 @@ AHEAD_TICKS = 2
 """How far after the instant of a truth the radio goes at most: a tick lasts one, and the next truth may
 be late by one. If it is later the world sets its clock back, and the radio would be ahead of it."""
 
-AWAY_S = 10.0
-"""How long the world may be away [s]: the router may be, if it is a process of its own."""
-
 
 class RealTimeRadio:
     """One mission. robots: ids of the team. speed: simulated seconds in one of the wall clock.
@@ -73,7 +70,7 @@ class RealTimeRadio:
                 elif what == topics.END:
                     return 0
                 elif what == topics.alive(topics.WORLD):
-                    away_until_s = time.monotonic() + AWAY_S if data == GONE else math.inf
+                    away_until_s = time.monotonic() + startup.REUNION_S if data == GONE else math.inf
             if self._clock.is_set:
                 now_ns = self._clock.now_ns(time.monotonic())
                 self._deliver(self._radio.follow(min(now_ns, self._latest_ns)))

@@ -7,8 +7,7 @@ import numpy as np
 
 from onehop.analysis.log import Log
 from onehop.contracts.arrays import FloatArray
-from onehop.contracts.program_section import BUILT_IN
-from onehop.drivers.planning_moments import PlanningMoments
+from onehop.drivers.planning_moments import PlanningMoments, is_known
 
 MOST_ROBOTS = 8
 """Robots whose planning is kept at hand; few lead, and another one's is only executed again."""
@@ -26,7 +25,7 @@ class RoadMaps:
 
         file: which file of this name the log is; another one begins anew. Raises OnehopError.
         """
-        if log.scenario.program_of(robot)[0] != BUILT_IN:
+        if not is_known(log.scenario, robot):
             return {}
         if file != self._file:
             self._file = file

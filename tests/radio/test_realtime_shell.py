@@ -11,11 +11,11 @@ from onehop.contracts.messages import BROADCAST, RadioRecord, TransmitRequest
 from onehop.contracts.radio_section import RadioSection
 from onehop.contracts.realtime import Handed, Placed
 from onehop.node.bus import ALIVE, GONE
-from onehop.node.startup import WORLD_IS_GONE
+from onehop.node.startup import REUNION_S, WORLD_IS_GONE
 from onehop.wire.batch import unpack_tick
 from onehop.wire.codec import decode, encode
 from radio_proxy.core.bounds import make_radio
-from radio_proxy.realtime import AHEAD_TICKS, AWAY_S, RealTimeRadio
+from radio_proxy.realtime import AHEAD_TICKS, RealTimeRadio
 from tests.radio.missions import PERIOD, Mission, line, message
 
 Said = tuple[float, str, bytes]
@@ -92,7 +92,7 @@ def test_a_truth_that_comes_again_brings_the_account_before_it_again(
 
 
 def test_the_world_may_be_away_for_a_while(monkeypatch: pytest.MonkeyPatch) -> None:
-    back = [(1.0, WORLD, GONE), (0.9 * AWAY_S, WORLD, ALIVE), (3.0 * AWAY_S, topics.END, b"")]
+    back = [(1.0, WORLD, GONE), (0.9 * REUNION_S, WORLD, ALIVE), (3.0 * REUNION_S, topics.END, b"")]
     assert serve(Bus([placed(0, 0.0), *back], monkeypatch)) == 0
-    gone = [(1.0, WORLD, GONE), (1.1 + AWAY_S, WORLD, ALIVE)]
+    gone = [(1.0, WORLD, GONE), (1.1 + REUNION_S, WORLD, ALIVE)]
     assert serve(Bus([placed(0, 0.0), *gone], monkeypatch)) == WORLD_IS_GONE

@@ -13,6 +13,7 @@ from msgspec.structs import replace
 from onehop.contracts import topics
 from onehop.contracts.messages import Outcome, Truth
 from onehop.contracts.operation import Punctuality
+from onehop.node import startup
 from onehop.wire.codec import encode
 from world_server.core.command_hold import CommandHold
 from world_server.core.world import World
@@ -29,9 +30,6 @@ from world_server.roll_call import RollCall
 
 LEAD_S = 0.2
 """From the arrival of the last process to the first tick [s]."""
-
-REUNION_S = 10.0
-"""How long the radio may take to come back, or a router of its own and all its clients [s]."""
 
 LAST_ACCOUNT_S = 2.0
 """How long the radio may take for the last tick, when the mission is over [s]."""
@@ -106,9 +104,11 @@ class RealTime:
         """Without router or radio nobody can do anything: the tick lasts until all are back."""
         if self.roll.settle():
             return
-        self.mail.wait(self.roll.settle, REUNION_S)
+        self.mail.wait(self.roll.settle, startup.REUNION_S)
         if self.roll.router_is_gone:
-            raise MissionBrokenError(f"the router is gone, and did not come back within {REUNION_S:g} s")
+            raise MissionBrokenError(
+                f"the router is gone, and did not come back within {startup.REUNION_S:g} s"
+            )
         self.roll.give_up()
         self.radio.excuse()
         self.robots.excuse()

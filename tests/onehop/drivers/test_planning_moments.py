@@ -1,5 +1,7 @@
 """What a leader planned, from the log alone: as in the mission, in whatever order it is asked for."""
 
+import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -7,11 +9,14 @@ import pytest
 from onehop.contracts import topics
 from onehop.contracts.geometry import Pose
 from onehop.contracts.messages import Observation
+from onehop.contracts.scenario import Scenario
 from onehop.drivers.planning_moments import PlanningMoments
 from onehop.live.road_maps import RoadMaps
 from onehop.live.source import Source
+from onehop.scenario.bundle import Bundle
 from onehop.wire.codec import decode
 from onehop.wire.log_reader import LogFile
+from onehop.wire.log_writer import LogWriter
 from robot_agent.core.planning import frontier_planner
 from robot_agent.core.planning.snapshot import PlanningSnapshot
 from tests.onehop.analysis.conftest import HELD, KILLED_S, LEADER, SUCCESSOR, scenario, write_log
@@ -101,3 +106,42 @@ def test_what_drives_itself_has_no_road_map_of_ours(tmp_path: Path) -> None:
     assert source.log is not None
     assert RoadMaps().of(1, source.log, 2, 10) == {}
     assert RoadMaps().of(1, source.log, 1, 10) == {}
+
+
+def copied(path: Path, mission: Scenario, out: Path, leave_out: int = -1) -> LogFile:
+    """The ticks of a log but for one, as if they were those of this mission."""
+    log = LogFile(path)
+    writer = LogWriter(out, Bundle(mission, {}), "test")
+    for tick in log.ticks():
+        if tick.tick != leave_out:
+            writer.write(tick.tick, tick.messages)
+    writer.close(log.summary)
+    return LogFile(out)
+
+
+def test_from_a_missing_tick_on_nobody_knows_what_was_planned(path: Path, tmp_path: Path) -> None:
+    tick, planned = all_of(LogFile(path), SUCCESSOR)[-1]
+    log = copied(path, scenario(), tmp_path / "mission.mcap", leave_out=tick)
+    moments = PlanningMoments(scenario(), SUCCESSOR)
+    assert moments.last(log, tick + 1) is None
+    before = moments.last(log, tick - 1)
+    assert before is not None
+    assert before[0] < tick
+    assert before[1].way.tolist() != planned.way.tolist()
+    assert moments.last(log, tick + 5) is None
+
+
+@pytest.mark.parametrize("setting", ["planner.kind", "gains.policy"])
+def test_nothing_that_a_log_names_is_imported_to_show_it(
+    setting: str, path: Path, tmp_path: Path
+) -> None:
+    section, key = setting.split(".")
+    mission = scenario()
+    other = replace(mission, **{section: replace(getattr(mission, section), **{key: "antigravity:fly"})})
+    copied(path, other, tmp_path / "mission.mcap")
+    source = Source(tmp_path / "mission.mcap")
+    source.open()
+    while source._read_on():
+        pass
+    assert source.road_map(LEADER, KILLED) == {}
+    assert "antigravity" not in sys.modules
