@@ -97,12 +97,12 @@ class Contents:
 
     def _look_at_new(self) -> None:
         """Whether those that have been added begin and end no earlier than the ones before."""
-        stretches = self.stretches
-        for i in range(max(1, self._looked_at), len(stretches)):
+        stretches, count = self.stretches, len(self.stretches)  # another thread may add more meanwhile
+        for i in range(max(1, self._looked_at), count):
             before, one = stretches[i - 1], stretches[i]
             if one.first_ns < before.first_ns or one.last_ns < before.last_ns:
                 self._in_order = False
-        self._looked_at = len(stretches)
+        self._looked_at = count
 
 
 def damaged(path: Path, at: int, why: str) -> LogError:
